@@ -29,7 +29,7 @@ def compare(first: Run, second: Run) -> Comparison:
     """Compare two runs of a case with the tolerances of the case.
 
     :param first: a run of the reduced model or of the DEM
-    :param second: a run of the other model, or of the same model
+    :param second: a run of the other model, or another run of the same model
     :raises StatejumpError: the runs belong to different cases, or one of them is incomplete
     """
     if first.definition != second.definition:
@@ -47,9 +47,9 @@ def compare(first: Run, second: Run) -> Comparison:
 
 
 def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
-    """Return the rest positions of a loaded joint, for a ``statics`` case or the block of a ``spring_slider`` case.
+    """Return the rest positions of a loaded joint: a ``statics`` case, or the block of a ``spring_slider`` case.
 
-    :param friction_coefficient: replaces that of the case
-    :raises StatejumpError: the kind has no rest positions, or its mesh is unusable
+    :param friction_coefficient: replaces the friction coefficient of the case
+    :raises StatejumpError: this kind of case has no rest positions, or the mesh of the case is unusable
     """
     return require(case, JointStatics).statics(case, friction_coefficient)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Temperatures of members over an orbit with shadow, for examples and first estimates. Every member has one temperature
-and is independent of the others, without the couplings of a thermal analysis.
+and does not affect the others, as it would in a thermal analysis.
 
 For a member with radiating area A, in sunlight (s = 1) or shadow (s = 0)::
 
@@ -68,8 +68,8 @@ class Member:
 class Temperatures:
     """Result of :func:`temperatures`.
 
-    :param time_s: times from 0 (n)
-    :param temperature_K: temperatures of every member (n, members)
+    :param time_s: n times [s], from 0
+    :param temperature_K: temperatures of every member (n, members) [K]
     """
 
     names: tuple[str, ...]
@@ -90,12 +90,13 @@ def temperatures(
     """Return the temperatures of members over a periodic orbit.
 
     :param period_s: duration of the orbit [s]
-    :param shadow_s: begin and end of each shadow [s], within the orbit, in order
+    :param shadow_s: begin and end of each shadow [s], within the orbit, in ascending order
     :param orbits: number of returned orbits
-    :param samples_per_orbit: number of equal steps per orbit; begin and end of every shadow are further times
+    :param samples_per_orbit: number of equal steps per orbit. Begin and end of every shadow are returned as further
+        times
     :param sink_K: temperature of the surroundings except the Sun [K]
-    :param solar_constant_W_per_m2: solar flux on an area across the rays [W/m2]
-    :param within_K: largest error of linear interpolation between the returned times [K]; None: all times are returned
+    :param solar_constant_W_per_m2: solar flux through an area normal to the rays [W/m2]
+    :param within_K: allowed error of linear interpolation between the returned times [K]; None: all times are returned
     :raises StatejumpError: a number is out of its range, shadows overlap, or no periodic orbit is reached
     """
     for key, value, allowed in (
@@ -135,8 +136,8 @@ def temperatures(
 
 
 def _needed(time_s: Numbers, values: Numbers, within: float, corners: np.ndarray) -> list[int]:
-    """Return the rows (n) of values (n, m) for piecewise linear interpolation with the allowed error. From each row,
-    the farthest admissible row is next. Corners are kept."""
+    """Return the rows (n) of values (n, m) that linear interpolation with the allowed error needs: after each row the
+    farthest admissible one. Corners are kept."""
     kept, fixed = [0], set(corners.tolist())
     last = 1
     for row in range(2, len(time_s)):
@@ -183,9 +184,9 @@ class _Orbit:
 def _stepped(start_K: Numbers, balance_K: Numbers, loss_times_step: Numbers) -> Numbers:
     """Return T after a time step of dT/dt = k (B^4 - T^4), by solving the closed form of the time as a function of T.
 
-    With u = T/B the time since the start is [artanh(u)/2 + arctan(u)/2]/(k B^3), with arcoth above the balance. Without
-    balance (B = 0) it is 1/(3 k T^3). T approaches B without reaching it. A Newton step beyond B is replaced by half of
-    the remaining distance.
+    With u = T/B the time since the start is [artanh(u)/2 + arctan(u)/2]/(k B^3), with arcoth above the balance. If the
+    balance temperature B is 0, the time is 1/(3 k T^3). T approaches B without reaching it, so a Newton step beyond B
+    is replaced by half of the remaining distance.
     """
     low, high = np.minimum(start_K, balance_K), np.maximum(start_K, balance_K)
     settled = high - low <= 1e-13 * high

@@ -49,7 +49,7 @@ LEAST = {"chain": 1, "iwan": 1, "umbrella": 1, "ring": 3, "mast": 1}
 
 
 def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
-    """Return a function that makes a case from the document of a generator."""
+    """Convert a generator of case documents to a function that returns a case."""
     name = document.__name__
     number = Rule(WHOLE, allowed=Range(LEAST[name], LARGEST))
 
@@ -74,11 +74,11 @@ MAKERS = dict[str, Callable[..., Case]](chain=chain, iwan=iwan, umbrella=umbrell
 
 
 def draw(case: Case, axes: Axes | None = None, names: bool = False) -> Figure:
-    """Draw a truss without solving it: nodes, links by temperature, supports, joints, springs, loads.
+    """Draw a truss without solving it: nodes, links coloured by temperature, supports, joints, springs, loads.
 
     :param case: a case of kind ``truss``
     :param axes: axes to draw into, with projection ``3d`` for a spatial truss; None: a new figure
-    :param names: write the names of all nodes, for any number of nodes
+    :param names: whether to write the names of all nodes, however many there are
     :raises StatejumpError: the case is of another kind, or the axes are not three-dimensional
     """
     return require(case, CaseDrawing).draw(case, axes, names)
@@ -86,12 +86,12 @@ def draw(case: Case, axes: Axes | None = None, names: bool = False) -> Figure:
 
 def creak(case: Case, node: str, *, progress: Progress = False) -> Creak:
     """Return results of a truss in motion: slips of the joints with their heat, and the acceleration of a node with its
-    spectrum, peak and RMS in octaves.
+    spectrum and its peak and RMS in octaves.
 
     :param case: a case of kind ``truss``; its section ``[motion]`` sets the time steps
     :param node: name of the node
-    :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
-    :raises StatejumpError: the case is of another kind, the node does not exist, or a step has no solution
+    :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
+    :raises StatejumpError: the case is of another kind, the node does not exist, or a time step has no solution
     """
     kind = require(case, Creaking)
     with shown(progress, "motion") as on_progress:
@@ -106,13 +106,13 @@ def answers(
     """Answer the design questions of a truss: jumps, whether they settle, contributions of joints, sensitivities.
 
     :param case: a case of kind ``truss``
-    :param output: the output whose jump is divided among the joints: ``node`` (the one that moves most), ``node:NAME``,
-        ``rms`` or ``tilt`` of the reflector
-    :param cycles: replaces those of the case
-    :param each: also compute the sensitivity to every single item
-    :param step: relative change of parameters for sensitivities
+    :param output: the output whose jump is divided among the joints: ``node`` (the node that moves most),
+        ``node:NAME``, or ``rms`` or ``tilt`` of the reflector
+    :param cycles: replaces the number of cycles of the case
+    :param each: whether to compute also the sensitivity to every single item
+    :param step: relative change of each parameter
     :param sensitivity: whether to compute sensitivities
-    :param progress: True: show it on standard error; or a function of the finished fraction of each part
+    :param progress: True: show it on standard error; or a function that receives the finished fraction of each part
     :raises StatejumpError: the case is of another kind, the output does not exist, or the solver finds no path
     """
     found: TrussAnswers = require(case, DesignAnswers).answers(
@@ -126,19 +126,19 @@ def control(
     case: Case, *, node: str | None = None, jump_below: float | None = None,
     add_spring: Sequence[tuple[str, str]] = (), scale: Sequence[str] = (), progress: Progress = False,
 ) -> Study:
-    """Return the smallest change of springs, preloads, friction or other parameters that keeps the jump of a node at or
-    below a value, for each candidate by itself, and the best of them.
+    """Return, for each candidate by itself, the smallest change of springs, preloads, friction or other parameters that
+    keeps the jump of a node at or below a value, and the best candidate.
 
     :param case: a case of kind ``truss``
-    :param node: name of the node; None: the one that moves most
-    :param jump_below: largest allowed jump over all cycles [m]; None: half of that of the case
-    :param add_spring: pairs of nodes between which a spring may be added, without force in the reference configuration
-    :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` for all items; if no
-        candidate is given, all keys that may affect a jump
-    :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
-    :return: ``sentences`` and ``remarks`` have the result as text, ``recommendation`` as numbers, ``frame()`` the whole
-        scan
-    :raises StatejumpError: the case is of another kind, a node or key does not exist, or the case has no path
+    :param node: name of the node; None: the node that moves most
+    :param jump_below: largest allowed jump over all cycles [m]; None: half of the jump of the case
+    :param add_spring: pairs of nodes between which a spring may be added, unloaded in the reference configuration
+    :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` for all items. Without any
+        candidate, all keys that may affect a jump
+    :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
+    :return: ``sentences`` and ``remarks`` state the result as text, ``recommendation`` as numbers; ``frame()`` has the
+        whole scan
+    :raises StatejumpError: the case is of another kind, a node or key does not exist, or the solver finds no path
     """
     kind = require(case, ControlStudy)
     with shown(progress, "control") as on_progress:

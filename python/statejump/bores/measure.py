@@ -42,7 +42,7 @@ class Section:
 
     @property
     def roundness_error_m(self) -> float:
-        """Peak to valley of the radius about the least-squares circle (ISO 12181)."""
+        """Roundness error [m]: range of the wall's distance from the centre of the least-squares circle (ISO 12181)."""
         return float(np.ptp(self.deviation_m))
 
 
@@ -52,7 +52,7 @@ def angles_rad() -> np.ndarray:
 
 
 def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
-    """Measure a section. :raises StatejumpError: the wall has gaps, or reverses its direction about the centre"""
+    """Measure a section of a bore. :raises StatejumpError: the wall has gaps, or turns back about the centre"""
     radii = mesh.section_radii_m(z_m, ANGLES)
     if not np.all(np.isfinite(radii)):
         missing = float(np.degrees(angles_rad()[int(np.argmin(np.isfinite(radii)))]))
@@ -95,10 +95,10 @@ def _resample(around: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.
 class Bore:
     """Measurements of a bore.
 
-    :param name: name in tables and figures: that of the file
+    :param name: name in tables and figures: the name of the file
     :param mesh: the wall with fitted axis, mean radius and curvatures
     :param sections: roundness in SECTIONS sections along the axis
-    :param journal_radius_m: radius of the journal in the bore [m]; None: no clearance
+    :param journal_radius_m: radius of the journal in the bore [m]; None: the bore is measured without a journal
     """
 
     name: str
@@ -113,7 +113,7 @@ class Bore:
 
     @property
     def cylindricity_m(self) -> float:
-        """Peak to valley of the radius about the least-squares cylinder, over all sections."""
+        """Cylindricity [m]: range of the distance of the wall from the least-squares cylinder, over all sections."""
         radii = np.concatenate([self.mesh.section_radii_m(s.z_m, ANGLES) for s in self.sections])
         return float(np.ptp(radii))
 
@@ -124,8 +124,8 @@ class Bore:
 
     @property
     def dominating_harmonic(self) -> int | None:
-        """Number of waves of the largest lobes in the middle section; None if they are smaller than the error of the
-        mesh."""
+        """Number of waves of the harmonic with the largest amplitude in the middle section; None if the amplitude is
+        smaller than the error of the mesh."""
         largest = int(np.argmax(self.middle.amplitude_m))
         if self.middle.amplitude_m[largest] <= self.mesh.reconstruction_error_m:
             return None
@@ -133,18 +133,18 @@ class Bore:
 
     @property
     def clearance_m(self) -> float | None:
-        """Radial clearance to the journal from the least-squares radius [m]; None: no journal."""
+        """Radial clearance [m]: least-squares radius of the bore minus journal radius; None without a journal."""
         return None if self.journal_radius_m is None else self.mesh.mean_radius_m - self.journal_radius_m
 
     @property
     def smallest_clearance_m(self) -> float | None:
-        """Smallest radial clearance of a journal centred on the axis [m]; None: no journal."""
+        """Smallest radial clearance [m] of a journal centred on the axis of the bore; None without a journal."""
         return None if self.journal_radius_m is None else self.smallest_radius_m - self.journal_radius_m
 
     def frame(self) -> pandas.DataFrame:
-        """Return one row per section, from one end to the other, with units in the column names: position along the
-        axis from the middle, radius and centre of the least-squares circle, roundness error, and for every harmonic its
-        amplitude and the angle of its largest radius."""
+        """Return one row per section, from one end of the bore to the other. Columns, with units in their names: axial
+        position from the middle, radius and centre of the least-squares circle, roundness error, and the amplitude and
+        the angle of the largest radius of every harmonic."""
         rows = []
         for each in self.sections:
             row = {"z_m": each.z_m, "mean_radius_m": each.mean_radius_m, "offset_x_m": each.offset_m[0],
@@ -232,10 +232,10 @@ class NoBore(StatejumpError):
 
 
 def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMesh:
-    """Read the wall of a bore.
+    """Read the wall of a bore from a mesh file.
 
     :param unit_m: length of one unit of the file [m]
-    :param flip: reverse every face
+    :param flip: whether to reverse every face
     :raises NoBore: the file is not a bore
     """
     try:
@@ -252,7 +252,7 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
 
 
 def check_journal(key: str, radius_m: float | None) -> None:
-    """Raise NotAllowed for an invalid radius of a journal; None: there is no journal."""
+    """Raise NotAllowed if the radius of a journal is invalid; None (no journal) is valid."""
     if radius_m is not None and not 0 < radius_m < float("inf"):
         raise NotAllowed(key, radius_m, code="not_positive", unit="m")
 
@@ -260,7 +260,7 @@ def check_journal(key: str, radius_m: float | None) -> None:
 def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = None) -> Bore:
     """Measure a bore in SECTIONS sections.
 
-    :raises NotAllowed: the journal is invalid
+    :raises NotAllowed: the radius of the journal is invalid
     :raises NoBore: the wall has gaps, or its radius differs too much from that of the journal
     """
     check_journal("journal_radius_m", journal_radius_m)
@@ -280,13 +280,13 @@ def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = 
 def bore(
     path: str | Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
 ) -> Bore:
-    """Measure a bore: roundness, lobes, clearance to a journal.
+    """Measure the roundness and the lobes of a bore, and its clearance to a journal.
 
     :param path: OFF, STL, PLY or OBJ file of its wall
     :param unit_m: length of one unit of the file [m]: 0.001 for millimetres
     :param journal_radius_m: radius of the journal in the bore [m]
-    :param flip: reverse every face, for a file whose normals point into the material
-    :raises StatejumpError: the file is not a bore; the message has reason and position
+    :param flip: whether to reverse every face, for a file whose normals point into the material
+    :raises StatejumpError: the file is not a bore; the message states reason and position
     """
     mesh = load(Path(path), unit_m, flip)
     with located(file=path):

@@ -20,7 +20,7 @@ def magnification(bore: Bore) -> float:
 
 
 def drawn(bore: Bore, axes: tuple[Axes, Axes] | None = None) -> Figure:
-    """Return the picture, or draw sections and harmonics into two given axes."""
+    """Draw sections and harmonics of a bore into two given axes or, without axes, into a new figure; return it."""
     if axes is not None:
         _sections(axes[0], bore)
         _harmonics(axes[1], bore)

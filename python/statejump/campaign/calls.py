@@ -26,10 +26,10 @@ def sweep(
         ``section.*.key`` or ``section.joint*.key`` of all matching items. A value is a list, or the fields of a
         ``[[vary]]`` table: ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
-    :param workers: number of processes; None: one for each core, or no separate process if the grid is small
-    :param outputs: further outputs to record of every run, for example ``jump:displacement_m[P].x``: end, jump, max,
-        min or range of any column of a run at one item; see :mod:`statejump.campaign.outputs`
-    :raises StatejumpError: a key is unknown, or the kind has no outcomes
+    :param workers: number of processes; None: one for each core, or just this process if the grid is small
+    :param outputs: further outputs to record, for example ``jump:displacement_m[P].x``: end, jump, max, min or range of
+        a column of the run at one item; see :mod:`statejump.campaign.outputs`
+    :raises StatejumpError: a key is unknown, or campaigns do not support this kind of case
     """
     tables: dict[str, dict[str, Any]] = {
         key: {"key": key, **plain(wanted)} if isinstance(wanted, Mapping) else {"key": key, "values": _values(wanted)}

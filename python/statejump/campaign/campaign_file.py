@@ -74,10 +74,10 @@ FILES: dict[str, type[Section]] = {MONTECARLO: MonteCarloFile, SWEEP: SweepFile}
 
 
 def load_campaign(path: Path, command: str) -> Plan:
-    """Return the checked campaign of a TOML file.
+    """Return the campaign of a TOML file after checking it.
 
     :param command: ``montecarlo`` or ``sweep``
-    :raises StatejumpError: one failure with file, key, value and allowed values
+    :raises StatejumpError: the first fault, with file, key, value and allowed values
     """
     text_read, data = read_toml(path, "campaign")
     with located(file=path):
@@ -117,12 +117,12 @@ def plan_for(
     case: Case, command: str, vary: Iterable[tuple[str, Mapping[str, Any]]], *, model: str = "reduced",
     samples: int | None = None, seed: int | None = None, asked: Sequence[str] = (),
 ) -> Plan:
-    """Return the plan of a campaign without a file.
+    """Return the plan of a campaign without a campaign file.
 
-    :param vary: ``[[vary]]`` tables, each with its name in messages
+    :param vary: ``[[vary]]`` tables, each with its name for messages
     :param samples: number of samples of a Monte Carlo campaign; None for a sweep, whose grid determines it
     :param seed: seed of a Monte Carlo campaign
-    :param asked: further outputs, beside the outcomes of the kind
+    :param asked: further outputs that the user requests
     :raises StatejumpError: as for :func:`load_campaign`
     """
     require(case, Outcomes)
@@ -145,9 +145,9 @@ def plan_for(
 
 
 def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the ``[[vary]]`` tables of a file without other content, as ``statejump identify`` writes it.
+    """Return the ``[[vary]]`` tables of a file that contains only such tables, as ``statejump identify`` writes it.
 
-    :raises StatejumpError: the file does not exist, has other sections, or has no such table
+    :raises StatejumpError: the file does not exist, has other sections, or has no ``[[vary]]`` table
     """
     _, data = read_toml(path, "distributions")
     with located(file=path):
@@ -172,8 +172,8 @@ def _check_sections(data: Mapping[str, Any], known: Sequence[str] = ("campaign",
 def check_campaign(case: Case, model: str, named: str, before: str = "") -> None:
     """Raise NotAllowed unless campaigns support this kind of case in this model.
 
-    :param named: name of the case for the caller
-    :param before: prefix of the keys of the case and of the model
+    :param named: the case as the caller named it
+    :param before: prefix of the keys ``case`` and ``model`` in the message
     """
     behaviour = of(case)
     if not supports(behaviour, Outcomes):
@@ -191,9 +191,9 @@ def check_workers(key: str, workers: int | None) -> None:
 
 
 def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command: str) -> tuple[Varied, ...]:
-    """Return the varied parameters.
+    """Return the varied parameters that ``[[vary]]`` tables define.
 
-    :param given: tables, each with its name in messages
+    :param given: tables, each with its name for messages
     :raises StatejumpError: a table is invalid
     """
     found: list[Varied] = []
@@ -208,7 +208,7 @@ def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command:
 
 
 def points_of(vary: tuple[Varied, ...]) -> int:
-    """Return the number of points of a grid. :raises NotAllowed: it is too large"""
+    """Return the number of points of a sweep's grid. :raises NotAllowed: the grid has too many points"""
     points = number_of_points([axis for axis in vary if isinstance(axis, Values)])
     if points > MOST_SAMPLES:
         raise NotAllowed("[[vary]]", code="grid_too_large", points=points, most_samples=MOST_SAMPLES)
@@ -216,9 +216,9 @@ def points_of(vary: tuple[Varied, ...]) -> int:
 
 
 def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
-    """Return the outputs after computing them for a run of the reduced model.
+    """Return the names of outputs after computing the outputs for a run of the reduced model.
 
-    :raises NotAllowed: one is invalid
+    :raises NotAllowed: a name is repeated or invalid
     """
     names = tuple(given)
     for place, name in enumerate(names):

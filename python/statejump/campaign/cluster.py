@@ -54,11 +54,11 @@ class SchedulerUnusable(StatejumpError):
 
 @contextmanager
 def open_client(scheduler: str | None, workers: int) -> Iterator[Client]:
-    """Yield a client. On exit, everything that this function started is ended.
+    """Yield a client of a Dask cluster. On exit, end every process that this function started.
 
     :param scheduler: address of a running scheduler; None: a cluster on this machine
     :param workers: number of single-threaded processes of the cluster on this machine
-    :raises StatejumpError: the scheduler cannot be reached, has no workers, or workers of another version
+    :raises StatejumpError: the scheduler cannot be reached, has no workers, or its workers run another version
     """
     with ExitStack() as stack:
         stack.enter_context(_quiet())
@@ -71,7 +71,7 @@ def open_client(scheduler: str | None, workers: int) -> Iterator[Client]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Silence Dask's messages about lost connections, because the campaign reports them itself."""
+    """Silence Dask's messages about lost connections, because the campaign itself reports lost connections."""
     loggers = [logging.getLogger(name) for name in ("distributed", "tornado", "asyncio", "concurrent.futures")]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
@@ -102,7 +102,7 @@ def _local(workers: int) -> Iterator[Client]:
 
 
 def restarts_workers(client: Client) -> bool:
-    """Return whether a local cluster is restarting a worker whose process ended."""
+    """Return whether a local cluster is restarting a worker because its process ended."""
     nannies = client.cluster.workers.values() if client.cluster is not None else ()
     over = (Status.closing, Status.closed, Status.closing_gracefully, Status.failed)
     return any(nanny.status not in over for nanny in nannies)
@@ -128,7 +128,7 @@ def _close(cluster: LocalCluster) -> None:
 
 @contextmanager
 def _interrupt_blocked() -> Iterator[None]:
-    """Block Ctrl-C for threads and processes started within, so that only this thread ends the campaign."""
+    """Block Ctrl-C in threads and processes started in this context, so that only this thread ends the campaign."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -138,7 +138,7 @@ def _interrupt_blocked() -> Iterator[None]:
 
 @contextmanager
 def _no_main_file() -> Iterator[None]:
-    """Hide the running script from new processes, which would otherwise run it again."""
+    """Hide the running script from processes that start in this context. They would otherwise run the script again."""
     main = sys.modules["__main__"]
     hidden = {name: main.__dict__.pop(name) for name in ("__file__", "__spec__") if name in main.__dict__}
     main.__dict__["__spec__"] = None

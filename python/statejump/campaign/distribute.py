@@ -28,7 +28,7 @@ class Workers:
     """A cluster that is ready to run samples.
 
     :param count: number of samples that it runs at the same time
-    :param run: yields finished batches of the samples with the given numbers, and the seconds that each took
+    :param run: function that yields the finished batches of the samples with given numbers, each with its duration [s]
     """
 
     count: int
@@ -37,7 +37,7 @@ class Workers:
 
 @contextmanager
 def workers_for(recipe: Recipe, scheduler: str | None, workers: int) -> Iterator[Workers]:
-    """Yield a cluster for a campaign. On exit, everything that this function started is ended.
+    """Yield a cluster that can run the samples of a campaign. On exit, end every process that was started here.
 
     :param scheduler: address of a running scheduler; None: a cluster on this machine
     :param workers: number of processes of that cluster
@@ -54,8 +54,8 @@ def _slots(client: Client) -> int:
 def _finished(
     client: Client, recipe: Recipe, missing: list[int]
 ) -> Iterator[tuple[float, Batch]]:
-    """Yield finished batches. Samples whose worker died are repeated at the end, one by one. A sample whose worker dies
-    again is reported as the cause."""
+    """Yield finished batches. Samples whose worker died are repeated one by one at the end. If the worker of a repeated
+    sample dies too, that sample is reported as the cause."""
     batches = Batches(missing, recipe.model, QUEUED)
     running: set[Future] = set()
     asked: dict[str, list[int]] = {}
@@ -94,8 +94,8 @@ Given = TypeVar("Given")
 
 
 def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
-    """Wait for a result; TimeoutError means that it is not available yet. :raises StatejumpError: the cluster is gone,
-    or has been without workers for too long"""
+    """Wait for the result of a call that raises TimeoutError until its result is available. :raises StatejumpError: the
+    cluster is gone, or has been without workers for too long"""
     alone_since: float | None = None
     while True:
         try:
@@ -118,7 +118,8 @@ def _some_of(client: Client, running: set[Future]) -> set[Future]:
 
 
 def _answer(client: Client, future: Future) -> tuple[float, Batch] | None:
-    """Return the result of a batch; None: its worker died. A result that is lost with its worker is computed again.
+    """Return the result of a batch; None if its worker died. Dask repeats a batch whose result is lost. :raises
+    StatejumpError: see :func:`_patiently`
     :raises StatejumpError: see :func:`_patiently`"""
     try:
         return _patiently(client, lambda: future.result(timeout=LOOK_S))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the missing samples of a campaign: a few in this process, many on a Dask cluster. A sample depends only on the
-seed and its number, so the table does not depend on where samples are run."""
+seed and on its number. The table of samples is therefore the same wherever they run."""
 from __future__ import annotations
 
 import os
@@ -57,10 +57,10 @@ def run_missing(
 ) -> Statistics:
     """Run the missing samples. Every finished batch is stored before the next is counted.
 
-    :param kept: stored samples; finished samples are added
+    :param kept: stored samples; this function adds finished samples
     :param scheduler: address of a running scheduler; None: a cluster on this machine
-    :param workers: number of processes of that cluster; None: one per core, or none for a reduced model if this process
-        needs about the start time of workers
+    :param workers: number of processes of the cluster on this machine; None: one per core, or none for a reduced model
+        if this process is as fast as the start of workers
     :param on_progress: called with the finished fraction of all samples
     :raises StatejumpError: no cluster is available; finished samples are stored
     """
@@ -78,8 +78,8 @@ def run_missing(
 
 
 def _here(campaign: Plan, missing: list[int], account: _Account) -> list[int]:
-    """Run samples in this process. Return the remaining samples when HERE_S has passed, or when workers would finish
-    them sooner, including their start."""
+    """Run samples in this process until HERE_S has passed, or until workers, including their start, would be faster.
+    Return the remaining samples."""
     batches, started, done = Batches(missing, campaign.model, 1), time.perf_counter(), account.done
     cores = len(os.sched_getaffinity(0))
     done.workers = 1

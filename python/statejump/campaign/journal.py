@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Journal of finished samples on disk, written batch by batch, so that a killed campaign can continue.
 
-Each line has a checksum (SHA-256), a blank and JSON. The first line has format, version, key and columns of the
-campaign. Every other line has one batch, written at once and synced. Values are packed: base64 of little-endian
-doubles, row by row. A torn last line is removed, and its samples are run again. A damaged line before it is an error.
-Only the owner of the folder opens a journal, see :mod:`statejump.core.results_folder`.
+Each line is a checksum (SHA-256), a blank and a JSON text. The first line describes the campaign: format, version, key
+and columns. Every other line holds one batch, and is written at once and synced. Values are packed: base64 of
+little-endian doubles, row by row. A torn last line is removed, and its samples are run again. A damaged earlier line is
+an error. Only the owner of the folder opens a journal, see :mod:`statejump.core.results_folder`.
 """
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ class Kept:
 
 
 class Journal(Kept):
-    """The journal of one campaign, a context manager. ``note`` reports a removed line; "" if there is none."""
+    """The journal of a campaign, as a context manager. ``note`` reports the removal of a torn line; else it is ""."""
 
     def __init__(self, folder: Path, campaign: Plan, restart: bool) -> None:
-        """Open or create the journal. :raises StatejumpError: it belongs to another campaign, or is damaged"""
+        """Open or create the journal. :raises StatejumpError: the journal belongs to another campaign, or is damaged"""
         super().__init__()
         self.path, self.note = folder / NAME, ""
         self._columns = len(campaign.outcomes)
@@ -122,7 +122,7 @@ def _line(entry: Any) -> bytes:
 
 
 def _entry_of(line: bytes) -> Any:
-    """Return the content of a line. :raises ValueError: the line is incomplete or altered"""
+    """Return the content of a line of the journal. :raises ValueError: the line is incomplete or altered"""
     digest, _, text = line.removesuffix(b"\n").partition(b" ")
     if not line.endswith(b"\n") or digest != hashlib.sha256(text).hexdigest().encode():
         raise ValueError

@@ -2,10 +2,10 @@
 """Outputs that a campaign records besides the outcomes of its kind of case: any column of a run, at named items.
 
 An output is ``HOW:COLUMN[ITEM].AXIS``, for example ``jump:displacement_m[P].x`` or ``max:links.axial_force_N[L3]``.
-Columns are those of the CSV files. Columns of links and contacts begin with ``links.`` or ``contacts.``. A vector
-without axis is replaced by its length. Columns of a reflecting surface, for example ``max:surface.pointing_error_rad``,
-are those of :func:`statejump.surface.history`. ``repeat`` is the largest difference of a value between a later return
-and the first one. A return is a time at which the temperature has its initial value again.
+Columns are those of the CSV files. Columns of links and contacts begin with ``links.`` or ``contacts.``. If the output
+of a vector names no axis, its length is recorded. Columns of a reflecting surface, for example
+``max:surface.pointing_error_rad``, are those of :func:`statejump.surface.history`. ``repeat`` is the largest difference
+of a value between a later return and the first one. At a return the temperature has its initial value again.
 """
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ def needs_all_samples(name: str) -> bool:
 
 
 def unit(name: str) -> str:
-    """Return the unit of an output, or of an outcome of a kind."""
+    """Return the unit of an output, or of an outcome, from its name."""
     found = FORM.fullmatch(name)
     return unit_of(found["column"] if found else name)
 
 
 def in_words(name: str) -> str | None:
-    """Return an output in words, without unit; None for the name of an outcome."""
+    """Describe an output in words, without its unit; return None if the name is that of an outcome of the kind."""
     found = FORM.fullmatch(name)
     if found is None:
         return None
@@ -73,7 +73,7 @@ def in_words(name: str) -> str | None:
 
 
 def values(names: Sequence[str], run: Run) -> dict[str, float]:
-    """Return the outputs of a run.
+    """Compute the requested outputs of a run.
 
     :raises NotAllowed: the run has no such column, item or axis; the message suggests a similar name
     """
@@ -95,7 +95,7 @@ def values(names: Sequence[str], run: Run) -> dict[str, float]:
 
 
 def _returned(run: Run, name: str) -> Run:
-    """Return the run at the times at which the temperature has its initial value again."""
+    """Return the samples of a run at the times at which the temperature has its initial value again."""
     times = run.definition.returns_s()
     if len(times) < 2:
         raise NotAllowed("outputs", name, code="output_without_jump", times=len(times))

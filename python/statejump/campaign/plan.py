@@ -29,10 +29,10 @@ class Recipe:
     :param model: ``reduced`` or ``dem``
     :param case_data: sections and keys of the case as in its file, without defaults
     :param vary: varied parameters
-    :param seed: of the random numbers; None in a sweep
-    :param outcomes: names of the recorded values of a run in the order of the table, outputs last
-    :param outputs: those of ``outcomes`` that are outputs, see :mod:`statejump.campaign.outputs`
-    :param kinds: modules of users' kinds
+    :param seed: seed of the random numbers; None in a sweep
+    :param outcomes: names of the recorded values in the order of the table, outputs last
+    :param outputs: those names that are outputs, see :mod:`statejump.campaign.outputs`
+    :param kinds: Python modules of kinds of cases that the user has registered
     """
 
     command: str
@@ -72,11 +72,11 @@ class Plan(Recipe):
     """A checked campaign.
 
     :param name: name of the campaign and of its results folder
-    :param title: one line for figures
+    :param title: title of figures, one line
     :param case: the case without variation
     :param samples: number of samples
     :param file: the campaign file; None: the campaign was made in Python
-    :param text: the file as read
+    :param text: text of the campaign file
     """
 
     name: str
@@ -115,9 +115,9 @@ def plan_of(
     case: Case, *, command: str, model: str, vary: tuple[Varied, ...], samples: int, seed: int | None, name: str,
     title: str = "", file: Path | None = None, text: str = "", asked: tuple[str, ...] = (),
 ) -> Plan:
-    """Return the plan of a campaign whose parts have been checked.
+    """Make the plan of a campaign from parts that have been checked.
 
-    :param asked: outputs beside the outcomes of the kind
+    :param asked: outputs that the user requests, besides the outcomes of the kind of case
     """
     at_end = () if case.ending is None else of(case).AT_PROGRAM_END
     return Plan(

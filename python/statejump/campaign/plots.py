@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures of a campaign: distributions and rank correlations, or outcomes along a sweep."""
+"""Figures of a campaign: for random samples distributions and rank correlations, for a sweep outcomes over the grid."""
 from __future__ import annotations
 
 import numpy as np
@@ -134,7 +134,7 @@ def _scatter(campaign: Plan, table: Table) -> Figure:
 
 
 def _sweep(campaign: Plan, table: Table) -> Figure:
-    """Return outcomes over the first parameter, with a line for every combination of the others."""
+    """Draw outcomes over the first varied parameter, with a line for every combination of the other parameters."""
     first, *others = campaign.vary
     along = table.parameters[first.keys[0]]
     rest = [table.parameters[parameter.keys[0]] for parameter in others]

@@ -33,9 +33,9 @@ _FIGURES, _SAVED = Later("statejump.campaign.plots:figures"), Later("statejump.c
 class Campaign:
     """A finished campaign.
 
-    :param plan: the plan
+    :param plan: plan of the campaign
     :param table: varied keys and outcomes of every sample
-    :param done: workers and run time [s]
+    :param done: number of workers and run time [s]
     """
 
     plan: Plan
@@ -57,7 +57,7 @@ class Campaign:
 
     def frame(self) -> pandas.DataFrame:
         """Return one row per sample: varied keys, outcomes with units in their names, and ``error``, the reason of a
-        failure. NaN: an event did not happen, or the sample failed."""
+        failure. An outcome is NaN if its event did not happen or if the sample failed."""
         return self.table.frame()
 
     @cached_property
@@ -65,8 +65,8 @@ class Campaign:
         return summary(self.plan, self.table)
 
     def summary(self) -> dict[str, Any]:
-        """Return mean, standard deviation, quantiles and extremes of every outcome and every varied key, rank
-        correlations, and the number of failures by kind."""
+        """Return mean, standard deviation, quantiles and extremes of every outcome and every varied key, their rank
+        correlations, and the number of failures of each kind."""
         return self._summary
 
     @property
@@ -77,7 +77,7 @@ class Campaign:
     def plot(self, name: str | None = None) -> Figure:
         """Draw the campaign: outcomes along the grid of a sweep, or the distributions of random samples.
 
-        :param name: ``distributions`` or ``correlations`` of random samples, ``sweep`` of a grid
+        :param name: ``distributions`` or ``correlations`` for random samples, ``sweep`` for a grid
         :raises ValueError: there is no such figure, or every sample failed
         """
         found = _FIGURES(self.plan, self.table)
@@ -109,7 +109,7 @@ class Campaign:
         return lines + [f"failed: {entry['samples']:,} sample(s): {entry['sentence']}" for entry in found["failures"]]
 
     def write(self, folder: Path) -> list[Path]:
-        """Write tables, summary, figures and data about the last run; return the paths of the results."""
+        """Write tables, summary, figures, and data about how the campaign ran; return the paths of the results."""
         csv, hdf5 = folder / "samples.csv", folder / "samples.h5"
         write_csv(self.table, csv)
         write_hdf5(self.plan, self.table, hdf5)
@@ -120,8 +120,7 @@ class Campaign:
         return written
 
     def _write_run(self, folder: Path) -> None:
-        """Write data about the last run, such as its workers, into a separate file, because no result depends on
-        them."""
+        """Write data about the execution, such as the workers, into a separate file; no result depends on them."""
         done = self.done
         write_json(folder / "run.json", {
             "samples_already_there": done.already_there, "samples_run": done.run_now, "workers": done.workers,
@@ -155,9 +154,9 @@ def run(plan: Plan, workers: int | None, on_progress: OnProgress) -> Campaign:
 def run_in(
     plan: Plan, folder: Path, scheduler: str | None, workers: int | None, restart: bool, on_progress: OnProgress
 ) -> Campaign:
-    """Run the samples that the journal in a folder lacks.
+    """Run the samples that are missing in the journal of a results folder.
 
-    :raises Interrupted: Ctrl-C; finished samples are stored
+    :raises Interrupted: Ctrl-C was pressed; finished samples are stored
     """
     _check_yade(plan, scheduler)
     with Journal(folder, plan, restart) as kept:
@@ -172,6 +171,6 @@ def run_in(
 
 
 def _check_yade(plan: Plan, scheduler: str | None) -> None:
-    """Raise FailedRun, before workers start, if the DEM is to run on this machine without YADE."""
+    """Raise FailedRun, before workers start, if DEM samples would run on this machine but YADE is missing."""
     if plan.model == "dem" and scheduler is None:
         find_yade()

@@ -14,8 +14,8 @@ DISTRIBUTIONS = ("normal", "truncated_normal", "lognormal", "uniform")
 
 @dataclass(frozen=True)
 class Distribution:
-    """A parameter as a random variable. ``mean`` and ``standard_deviation`` belong to the parameter (not to its
-    logarithm); for a truncated normal variable, to the distribution before truncation."""
+    """A parameter as a random variable. ``mean`` and ``standard_deviation`` are those of the parameter, not of its
+    logarithm. For a truncated normal variable they are those of the distribution before truncation."""
 
     keys: tuple[str, ...]  # paths section.key; all get the same value
     distribution: str
@@ -37,8 +37,8 @@ class Distribution:
         return float(exp(log(self.mean) - 0.5 * spread**2 + spread * variate))
 
     def probabilities(self) -> tuple[float, float, float]:
-        """Return the cumulative probabilities of both limits, and a sign that selects the tail in which small
-        probabilities keep their digits."""
+        """Return the cumulative probabilities of both limits of a truncated normal variable, and a sign. The sign
+        selects the tail in which small probabilities keep their digits."""
         ends = [(end - self.mean) / self.standard_deviation for end in (self.low, self.high)]
         sign = -1.0 if ends[0] > 0 else 1.0
         low, high = sorted(float(ndtr(sign * end)) for end in ends)
@@ -52,14 +52,14 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Independent:
-    """A parameter of every item of a list, ``slider.*.friction_coefficient``, drawn independently for each item, as in
-    manufacture. Its column has the mean over the items."""
+    """A parameter of every item of a list, such as ``slider.*.friction_coefficient``, with an independent random value
+    for each item, as in manufacture. The column of the table has the mean over the items."""
 
     keys: tuple[str, ...]
     items: tuple[Distribution, ...]  # keys with the item's name
 
     def draws(self, generator: np.random.Generator) -> list[float]:
-        """Return one value per item. Each uses one variate of the generator, in the order of the items."""
+        """Return one random value per item. Each item uses one variate of the generator, in the order of the items."""
         return [item.draw(generator) for item in self.items]
 
 
@@ -84,7 +84,7 @@ def number_of_points(vary: Sequence[Values]) -> int:
 def montecarlo_draws(
     vary: Sequence[Random], seed: int, index: int
 ) -> list[tuple[Distribution, float]]:
-    """Return all single draws of sample ``index``, in the order of the parameters and of their items."""
+    """Return all random values of sample ``index``, in the order of the parameters and of their items."""
     generator = np.random.default_rng([seed, index])
     found: list[tuple[Distribution, float]] = []
     for parameter in vary:
@@ -96,7 +96,7 @@ def montecarlo_draws(
 
 
 def montecarlo_values(vary: Sequence[Random], seed: int, index: int) -> list[float]:
-    """Return the values of sample ``index``, one per varied parameter: the mean of the items for an independent one."""
+    """Return the values of sample ``index``, one per varied parameter; for an independent one, the mean over items."""
     draws = iter(montecarlo_draws(vary, seed, index))
     found = []
     for parameter in vary:
@@ -106,7 +106,7 @@ def montecarlo_values(vary: Sequence[Random], seed: int, index: int) -> list[flo
 
 
 def sweep_values(vary: Sequence[Values], index: int) -> list[float]:
-    """Return the values of point ``index`` of the grid; the last list varies fastest."""
+    """Return the values of grid point ``index`` of a sweep; the values of the last list vary fastest."""
     found: list[float] = []
     for axis in reversed(vary):
         index, place = divmod(index, len(axis.values))

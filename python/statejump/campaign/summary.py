@@ -37,7 +37,8 @@ def statistics(values: np.ndarray) -> dict[str, float | None]:
 
 
 def spearman(parameter: np.ndarray, outcome: np.ndarray) -> float | None:
-    """Return the rank correlation over the samples that have the outcome; None if parameter or outcome is constant."""
+    """Return the rank correlation over the samples with a finite outcome; None for fewer than three, or if parameter or
+    outcome is constant."""
     from scipy.stats import rankdata  # 0.5 s; workers do without
 
     there = np.isfinite(outcome)

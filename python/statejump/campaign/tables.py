@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns over the samples. Outcomes of a failed sample are NaN, and ``error`` has the reason.
+    """Columns of a campaign, one value per sample. A failed sample has the outcomes NaN, and its reason in ``error``.
 
-    :param parameters: values by varied key
-    :param outcomes: values by outcome
-    :param error: error messages; "" if the sample did not fail
-    :param error_kind: error messages without the parts that differ between failures of one kind
+    :param parameters: column of each varied key
+    :param outcomes: column of each outcome
+    :param error: error message of each sample; "" if it did not fail
+    :param error_kind: error messages without the numbers that differ between failures of one kind
     """
 
     parameters: dict[str, np.ndarray]
@@ -51,7 +51,7 @@ class Table:
 
 
 def make_table(campaign: Plan, batches: Iterable[Batch]) -> Table:
-    """Collect all samples in their order; batches may contain samples that the campaign does not need."""
+    """Collect all samples in the order of their numbers; omit samples that the campaign does not need."""
     parameters = np.array([campaign.values(index) for index in range(campaign.samples)], dtype=float)
     outcomes = np.full((campaign.samples, len(campaign.units)), np.nan)
     errors, kinds = [""] * campaign.samples, [""] * campaign.samples
@@ -70,7 +70,7 @@ def make_table(campaign: Plan, batches: Iterable[Batch]) -> Table:
 
 
 def write_csv(table: Table, path: Path) -> None:
-    """Write one line per sample, full precision; outcomes of a failed sample are empty."""
+    """Write one line per sample in full precision. The outcomes of a failed sample are empty cells."""
     columns = [values.tolist() for values in (*table.parameters.values(), *table.outcomes.values())]
     count = len(table.parameters)
     # Cells as texts. NaN is kept for a sample that did not fail: the event did not happen.
@@ -82,7 +82,7 @@ def write_csv(table: Table, path: Path) -> None:
 
 
 def write_hdf5(campaign: Plan, table: Table, path: Path) -> None:
-    """Write groups ``parameters`` and ``outcomes``, each column with its unit, and ``failed``."""
+    """Write the groups ``parameters`` and ``outcomes``, whose columns have units, and the data set ``failed``."""
     h5py = libraries.h5py()
 
     with made(path) as file:

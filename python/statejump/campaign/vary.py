@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fields of a ``[[vary]]`` table, and their conversion to varied parameters of a case.
 
-Most fields depend on each other. Errors name the key within the table; the caller adds the name of the table.
+Which fields are allowed depends on other fields. An error names the field; the caller adds the name of the table.
 """
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ LIKE = "must be section.key as in the case file"
 
 
 def numbers_of(model: type[Case]) -> dict[str, Any]:
-    """Return every key of a kind whose value is a single number; keys of items of a list as ``section.*.key``."""
+    """Return every key of a kind whose value is a single number; keys of list items as ``section.*.key``."""
     return {path: key for path, key in keys_of(model).items() if rule_of(key).form in (NUMBER, WHOLE)}
 
 
 def _expression() -> str:
-    """Return a regular expression for the keys that can vary, for completion in editors."""
+    """Return a regular expression that matches every key that can vary. Editors use it to complete keys."""
     paths = sorted({path for name in names_of_kinds_with(Outcomes) for path in numbers_of(kind(name).Case)})
     return "(?:" + "|".join(re.escape(path).replace(r"\*", ".+") for path in paths) + ")"
 
 
 def _free(source: str, *, unit: str = "as key", above: float | None = None) -> Any:
-    """Declare a number without range, in the unit of the varied key."""
+    """Declare a number in the unit of the varied key, without an upper bound."""
     return parameter(None, unit, -math.inf if above is None else above, math.inf, source, above=above is not None)
 
 
@@ -79,10 +79,10 @@ TABLES: dict[str, type[Section]] = {MONTECARLO: MonteCarloVary, SWEEP: SweepVary
 
 
 def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
-    """Return the varied parameter of a table.
+    """Return the varied parameter that a ``[[vary]]`` table defines.
 
     :param command: ``montecarlo`` or ``sweep``
-    :raises StatejumpError: the table is invalid; the failure names its key
+    :raises StatejumpError: the table is invalid; the error names the key
     """
     known = list(fields_of(TABLES[command]))
     other = SWEEP if command == MONTECARLO else MONTECARLO
@@ -114,7 +114,7 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
 
 
 def check_apart(found: list[Varied], case: Case) -> None:
-    """Raise NotAllowed if the last varied parameter changes a number twice, or one that another parameter changes."""
+    """Raise NotAllowed if the last varied parameter changes a number that it or another parameter already changes."""
     taken = [key for parameter in found[:-1] for key in parameter.keys]
     for key in found[-1].keys:
         if any(_overlap(key, other, case) for other in taken) or found[-1].keys.count(key) > 1:
@@ -122,7 +122,7 @@ def check_apart(found: list[Varied], case: Case) -> None:
 
 
 def _overlap(one: str, other: str, case: Case) -> bool:
-    """Return whether two paths refer to a common number of the case."""
+    """Return whether two paths of keys refer to a common number of the case."""
     if pattern_of(one) != pattern_of(other):
         return False
     if one == other:
@@ -132,12 +132,13 @@ def _overlap(one: str, other: str, case: Case) -> bool:
 
 
 def _items(case: Case, path: str) -> list[str]:
-    """Return the names of the items of the list at the beginning of a path."""
+    """Return the names of the items in the list with which a path begins."""
     return [item.name for item in case.value_named(split_path(path)[0])]
 
 
 def _own_value(case: Case, path: str) -> float | None:
-    """Return the value in the case, or the common value of the items of a pattern; None if they differ."""
+    """Return the value of a key in the case; for a pattern, the common value of the matching items, None if they
+    differ."""
     section, item, key = split_path(path)
     if not item:
         found: float | None = getattr(case.value_named(section), key)
@@ -173,7 +174,7 @@ def _meant(word: str, known: list[str]) -> str | None:
 
 
 def _number(table: Mapping[str, Any], name: str, *, above: float | None = None) -> float | None:
-    """Return a finite number of a table; None if it is missing."""
+    """Return a field of a ``[[vary]]`` table as a finite number; None if the field is missing."""
     if name not in table:
         return None
     value = table[name]

@@ -34,7 +34,7 @@ class Sample:
 
 
 def sampled(case: Case, model: str, outputs: Sequence[str]) -> Run:
-    """Run one sampled case; keep the complete history only if an output needs it.
+    """Run one sampled case. Keep the complete history only if an output needs it.
 
     :raises StatejumpError: the run failed
     """
@@ -78,9 +78,9 @@ def _one_line(text: str) -> str:
 class Batch:
     """Several finished samples.
 
-    :param values: outcomes (samples, outcomes); NaN for a failed sample
-    :param errors: error messages of the failed samples, by index
-    :param error_kinds: error messages without the parts that differ between failures of one kind
+    :param values: outcomes (samples, outcomes); those of a failed sample are NaN
+    :param errors: error messages of the failed samples, by index in the batch
+    :param error_kinds: error messages without the numbers that differ between failures of one kind
     """
 
     indices: tuple[int, ...]
@@ -101,7 +101,7 @@ def batch_of(samples: Sequence[Sample], outcomes: int) -> Batch:
 
 
 def run_samples(recipe: Recipe, indices: Sequence[int]) -> tuple[float, Batch]:
-    """Run several samples; return the time [s] that they took, and the samples."""
+    """Run several samples; return the duration [s] and the finished samples."""
     started = time.perf_counter()
     for place in recipe.kinds:
         if place not in KINDS.values():
@@ -111,11 +111,11 @@ def run_samples(recipe: Recipe, indices: Sequence[int]) -> tuple[float, Batch]:
 
 
 class Batches:
-    """Distributes the missing samples in batches of about BATCH_S seconds, and adapts their size.
+    """Divides the missing samples into batches of about BATCH_S seconds, according to measured durations.
 
     :param missing: numbers of the samples
     :param model: ``reduced`` or ``dem``; DEM samples are run one by one
-    :param queued: tasks per worker
+    :param queued: number of batches that are queued per worker
     """
 
     def __init__(self, missing: list[int], model: str, queued: int) -> None:
@@ -136,7 +136,7 @@ class Batches:
         return batch
 
     def learn(self, count: int, seconds: float) -> None:
-        """Update the batch size from a timed batch, at most to four times its size: the first sample of a worker is
-        slower than the others."""
+        """Update the batch size from a measured duration, at most by a factor of four, because a worker's first sample
+        is slow."""
         fitting = int(BATCH_S / max(seconds / count, 1e-9))
         self.size = max(1, min(fitting, 4 * count, MOST_IN_BATCH))

@@ -19,14 +19,14 @@ from statejump.schema.paths import filled
 
 
 def column_of(path: str) -> str:
-    """Return the column of a varied key: yade-batch requires names of Python variables."""
+    """Return the column name of a varied key in a table of yade-batch, which requires names of Python variables."""
     return path.replace(".", "__")
 
 
 def write_table(campaign: Plan, path: Path) -> None:
-    """Write the table with one line per sample, for ``yade_scripts/runner/batch_case.py``.
+    """Write the table of yade-batch with one line per sample, for ``yade_scripts/runner/batch_case.py``.
 
-    The script reads the values from their columns, and case and outcomes from the campaign file.
+    That script reads the values from the columns, and the case and the names of outcomes from the campaign file.
     """
     if campaign.file is None or "dem" not in of(campaign.case).campaign_models():
         raise NotAllowed("--yade-batch", code="no_yade_batch_of_kind", file=campaign.file, kind=campaign.case.kind)
@@ -57,7 +57,7 @@ class BatchSample:
         return of(self.case).dem_values(self.case)
 
     def outcomes(self, samples: Path) -> dict[str, float]:
-        """Return the outcomes of a run from its file of samples and the JSON file beside it."""
+        """Return the outcomes of a DEM run from its file of samples and from the JSON file beside it."""
         about = json.loads(samples.with_name(samples.name + ".json").read_text(encoding="utf-8"))
         case = self.case
         run = require(case, DemResult).dem_run(case, read_samples(samples), about)

@@ -19,7 +19,7 @@ from statejump.schema.toml import read_toml
 
 
 def _of_case(command: Any) -> Any:
-    """Add to a command the options of a campaign without a file."""
+    """Add to a command the options that define a campaign without a campaign file."""
     for option in reversed((
         click.option("--vary", "tables", multiple=True, type=click.Path(path_type=Path), metavar="FILE",
                      help="Of a CASE: file of [[vary]] tables, as vary.toml of 'statejump identify'."),
@@ -34,7 +34,7 @@ def _of_case(command: Any) -> Any:
 
 
 def _plan(file: Path, name: str, of_case: dict[str, Any]) -> Plan:
-    """Return the campaign of a campaign file, or of a case and options."""
+    """Return the campaign of a campaign file, or the one that a case and options define."""
     given = [option for option, value in of_case.items() if value not in (None, ())]
     _, data = read_toml(file, "campaign")
     if name != MONTECARLO or "case" not in data or "campaign" in data:

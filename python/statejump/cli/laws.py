@@ -26,8 +26,8 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class CaseOrCommand(Suggesting):
-    """A group whose first argument may be a case: ``statejump laws [CASE]`` is ``statejump laws show [CASE]``, and
-    ``statejump laws --drive FILE`` is ``statejump laws drive --drive FILE``."""
+    """A group of commands whose first argument may be a case: ``statejump laws [CASE]`` means ``statejump laws show
+    [CASE]``, and ``statejump laws --drive FILE`` means ``statejump laws drive --drive FILE``."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Insert the name of the command before its arguments."""

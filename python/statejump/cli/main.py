@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ``statejump`` command: its subcommands, and the report of their failures. The module of a subcommand is imported
-when it is called. Exit statuses: docs/reference/mistakes.md."""
+only when the subcommand is called. docs/reference/mistakes.md lists the exit statuses."""
 from __future__ import annotations
 
 import os
@@ -71,7 +71,7 @@ COMMANDS = {name: found for commands in TASKS.values() for name, found in comman
 
 
 class Commands(Suggesting):
-    """Group of commands that imports the module of a command when it is called."""
+    """A group of commands that imports the module of a command only when the command is called."""
 
     def list_commands(self, context: click.Context) -> list[str]:
         return list(COMMANDS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump reduced``, ``dem`` and ``compare``: one model of a case, or a comparison of both."""
+"""``statejump reduced``, ``dem`` and ``compare``: run one model of a case, or compare both models."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -39,7 +39,7 @@ def _warn(case: Case, runs: dict[str, Run], console: Console) -> None:
 
 
 def _check(case: Case, folder: ResultsFolder, *models: str) -> None:
-    """Raise NotAllowed or NotWritten, before a run, if memory or disk space is too small for it."""
+    """Raise NotAllowed or NotWritten, before a run, if memory or disk space is too small for the history of the run."""
     for model in models:
         check_memory(case, model)
     folder.check_space(sum(history_of(case, model).disk_bytes for model in models))
@@ -115,7 +115,7 @@ def _quasi_static(case: Case, results: Results, console: Console) -> None:
 
 
 def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder, console: Console) -> Run:
-    """Run the DEM. If it is interrupted, its samples are written together with the runs before it."""
+    """Run the DEM. If it is interrupted, write its samples together with the earlier runs of the command."""
     try:
         with progress(console, "DEM") as on_progress:
             return case.dem(on_progress)
@@ -125,7 +125,7 @@ def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder
 
 def _kept(command: str, model: str, case: Case, before: dict[str, Run], folder: ResultsFolder,
           stopped: Interrupted) -> Interrupted:
-    """Write the samples of an interrupted run; return the error that reports them."""
+    """Write the samples of an interrupted run; return the error that reports where they are."""
     if not isinstance(stopped.run, Run):
         return stopped
     written = folder.publish([save(command, case, {**before, model: stopped.run}, folder.staged)])

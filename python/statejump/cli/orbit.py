@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump orbit``: temperatures of members over an orbit, as a file for cases."""
+"""``statejump orbit``: compute temperatures of members over an orbit, and write them to a file for cases."""
 from __future__ import annotations
 
 from pathlib import Path

@@ -18,10 +18,10 @@ BUDGET_BYTES = 7e6  # size of the histories of all runs [bytes]; a page stays be
 
 
 def result_files(run: Path) -> list[Path]:
-    """Return the result files of an argument: the file itself, the files of a results folder, or those of the folders
-    in it. A comparison supersedes the files of its single models, but not the answers.
+    """Return the result files that an argument means: a file itself, or the files in a results folder or in its
+    subfolders. In a folder, a comparison supersedes the files of single models, but not the answers on a truss.
 
-    :raises Unreadable: there is no result file
+    :raises Unreadable: the folder contains no result file
     """
     if not os.path.isdir(run):
         return [run]
@@ -42,7 +42,7 @@ def _target(output: Path | None, runs: tuple[Path, ...], files: list[Path]) -> P
 
 
 def _source(file: Path, files: list[Path]) -> str:
-    """Return the name of a file on the page: the file name, with its folder if there are several."""
+    """Return the name of a file on the page: the file name, with its folder if the page has several files."""
     return file.name if len(files) == 1 else f"{file.absolute().parent.name}/{file.name}"
 
 

@@ -68,8 +68,8 @@ class Stream(io.TextIOBase):
 
 
 def open_standard_files() -> None:
-    """Open standard input, output and error if they are closed. Otherwise a result file would get one of their numbers,
-    and libraries would print into it."""
+    """Open standard input, output and error if they are closed. Otherwise the next opened result file would get the
+    number of a closed stream, and libraries would print into the file."""
     for number in (0, 1, 2):
         try:
             os.fstat(number)
@@ -84,7 +84,7 @@ def install() -> None:
 
 
 def finish() -> NotWritten | None:
-    """Flush the streams. Return the error if standard output was lost, else None."""
+    """Flush the streams. Return the error if standard output was lost; otherwise return None."""
     failure = None
     for stream in (sys.stdout, sys.stderr):
         stream.flush()

@@ -18,7 +18,7 @@ if PRESENT and _SHARE not in sys.path:  # also for users' kinds of studies, whic
 
 
 def module(name: str) -> ModuleType:
-    """Import a module of the studies. :raises StatejumpError: the program is an installation without studies"""
+    """Import a module of the studies. :raises StatejumpError: this installation does not contain the studies"""
     if not PRESENT:
         raise StatejumpError(code="studies_missing", module=name)
     return import_module(name)

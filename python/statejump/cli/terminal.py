@@ -31,8 +31,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class CaseFile(click.Path):
-    """A case file: the given path or, if it does not exist, a shipped case. ``cases/table1.toml`` is thus found from
-    every folder."""
+    """Argument for a case file: the given path or, if it does not exist, a shipped case from any folder."""
 
     def __init__(self) -> None:
         super().__init__(path_type=Path)
@@ -47,7 +46,7 @@ FORCE = click.option("--force", is_flag=True, help="Replace results of another c
 
 
 def RESULTS(command: Command) -> Command:
-    """Add to a command the options of its results folder, which become one argument ``results``."""
+    """Add to a command the options of its results folder. The command receives them as one argument ``results``."""
 
     @wraps(command)
     def called(results: Path, wait: bool, force: bool, **values: Any) -> Any:
@@ -78,7 +77,7 @@ def since_start_s() -> float:
 
 
 def loaded(case_file: Path, *capabilities: type) -> Case:
-    """Load a case. Raise NotAllowed if its kind lacks a capability that the command needs."""
+    """Load a case. Raise NotAllowed if the kind of the case lacks a capability that the command needs."""
     case = load_case(case_file)
     for capability in capabilities:
         require(case, capability)
@@ -111,7 +110,7 @@ def print_shown(parts: Sequence[Shown | str], console: Console) -> None:
 
 def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
                      names: dict[str, str] | None = None) -> None:
-    """Print the rows of a comparison; ``names`` are the headings of the columns of values, by source."""
+    """Print a comparison. ``names`` maps each source of values, such as a model, to the heading of its column."""
     heads = {"closed_form": "closed form", "reduced": "reduced", "dem": "DEM", "fe": "CalculiX", **(names or {})}
     known = sides(rows)
     table = Table(title=title)
@@ -126,16 +125,15 @@ def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
 
 @contextmanager
 def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
-    """Yield a function of the finished fraction: it moves a bar on a terminal, and prints a line every 10 %
-    elsewhere."""
+    """Yield a function of the finished fraction: it moves a bar on a terminal, elsewhere it prints lines."""
     with on_console(console, label) as on_progress:
         yield on_progress
 
 
 @contextmanager
 def undivided(console: Console, label: str) -> Iterator[Callable[[float], None]]:
-    """As :func:`progress`, for runs whose files are written together at the end. After Ctrl-C it reports that nothing
-    was written."""
+    """Show progress like :func:`progress`, for runs whose files are written together at the end. After Ctrl-C, report
+    that nothing was written."""
     try:
         with progress(console, label) as on_progress:
             yield on_progress

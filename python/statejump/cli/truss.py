@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump truss``: case files of trusses made by generators, and their drawings."""
+"""``statejump truss``: make case files of trusses with generators, and draw trusses."""
 from __future__ import annotations
 
 import inspect
@@ -52,7 +52,7 @@ def truss_command() -> None:
 
 
 def _shown(key: str) -> str:
-    """Return the command option of a key, without the unit, which the help text contains."""
+    """Return the command option for a key. Its name omits the unit, which the help text contains."""
     return "--" + split_unit(key)[0].replace("_", "-")
 
 

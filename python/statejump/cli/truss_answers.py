@@ -23,8 +23,7 @@ OPTIONS = {name: f"--{name}" for name in ("output", "cycles", "step", "frames")}
 
 
 def folder_of(case: str, output: str) -> str:
-    """Return the subfolder for the answers. A selected output has its own, so that answers on other outputs are
-    kept."""
+    """Return the subfolder for answers on an output. A selected output has its own, so that other answers are kept."""
     return case if output == "node" else f"{case}/answers_{re.sub(r'[^A-Za-z0-9_.-]', '_', output)}"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump truss import``: conversion of a truss of another program to a case file."""
+"""``statejump truss import``: convert a truss of another program to a case file."""
 from __future__ import annotations
 
 import os
@@ -60,7 +60,7 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
 
 
 def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
-    """Raise an error for unit options with a file that states its units."""
+    """Raise an error if the user gives options for units although the imported file states its units."""
     for option, value in given.items():
         if value not in (None, "SI"):
             raise NotAllowed(option, value, code="units_in_columns", file=file)
@@ -179,9 +179,9 @@ def import_command(
 
 
 def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
-    """Return the lists that are written to files beside the case.
+    """Return the lists of items that are written to separate files beside the case.
 
-    :param tables: whether to write such files
+    :param tables: whether to write lists to separate files
     :param force: whether files may be overwritten
     :raises StatejumpError: a file exists already, or cannot be written
     """

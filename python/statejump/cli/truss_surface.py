@@ -114,8 +114,8 @@ def surface_command(
 def _of_case(
     case: Case, measure: str, console: Console
 ) -> tuple[Design, dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Return the surface of a case, its displacements in the sample with the largest error and at the end, and its
-    history."""
+    """Return the reflecting surface of a case, the displacements of its nodes at the largest error and at the end of
+    the run, and the history of its errors."""
     design, nodes = surface.reflector_of(case)
     with undivided(console, f"{case.name}, reduced model") as on_progress:
         run = require(case, ReducedModel).reduced(case, on_progress)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reduction of a state jump: one-at-a-time studies of parameters, for any kind of case."""
+"""Reduction of a state jump: each study varies one parameter at a time, for any kind of case."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @capability("control")
 class ControlStudy(Protocol):
-    """A study that reduces the state jump. The kind defines its settings."""
+    """A study of how to reduce the state jump. Each kind of case defines its settings."""
 
     def control(self, case: Any, **settings: Any) -> Study: ...
 
@@ -27,16 +27,16 @@ class RestSets(Protocol):
     """Rest positions of a joint; each kind has its own class."""
 
     def frame(self) -> pandas.DataFrame:
-        """Return the sets as a table, with units in the column names."""
+        """Return the rest sets as a table, with units in the column names."""
 
     def plot(self, axes: Axes | None = None) -> Figure:
-        """Draw the sets into the given axes, or into a new figure."""
+        """Draw the rest sets into the given axes, or into a new figure."""
 
     def summary_lines(self) -> list[Shown | str]:
         """Return the tables and lines that a command prints."""
 
     def write(self, folder: Path) -> list[Path]:
-        """Write the sets and their picture into a folder; return the paths."""
+        """Write the rest sets and their picture into a folder; return the paths of the files."""
 
 
 @capability("statics")
@@ -55,6 +55,6 @@ class DesignAnswers(Protocol):
 
 @capability("truss creak")
 class Creaking(Protocol):
-    """Slips of joints and the acceleration of a node in motion; see :func:`statejump.truss.creak`."""
+    """Slips of the joints of a truss in motion, and the acceleration of a node; see :func:`statejump.truss.creak`."""
 
     def creak(self, case: Any, node: str, on_progress: OnProgress) -> Any: ...

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of a control study of any kind: swept parameters, wanted value, searches."""
+"""Parts of a control study that all kinds of cases share: swept parameters, allowed jump, searches."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -28,7 +28,7 @@ RUNS = 40  # default size of an ensemble
 
 @dataclass
 class Row:
-    """One value of a parameter with its results. A result is None if the model has none; ``note`` has the reason."""
+    """One value of a swept parameter and its jumps. A jump is None if the model has none; ``note`` has the reason."""
 
     value: float
     results: dict[str, float | None]
@@ -38,7 +38,7 @@ class Row:
 
 @dataclass
 class Sweep:
-    """Sweep of one parameter; all others have their values in the case."""
+    """Sweep of one parameter; all other parameters keep their values of the case."""
 
     parameter: str  # path section.key, with the unit in the key
     label: str  # label of the axis, without unit
@@ -55,7 +55,7 @@ class Sweep:
         return next(row for row in self.rows if row.value == value)
 
     def insert(self, row: Row) -> None:
-        """Insert a row in order of its value; replace a row with the same value."""
+        """Insert a row in ascending order of its value. A row with the same value is replaced."""
         self.rows = sorted([kept for kept in self.rows if kept.value != row.value] + [row], key=lambda r: r.value)
 
     def column(self, name: str) -> np.ndarray:
@@ -63,7 +63,7 @@ class Sweep:
         return np.array([np.nan if row.results.get(name) is None else row.results[name] for row in self.rows])
 
     def shown(self, most: int = 7) -> list[Row]:
-        """Return the rows for a table: the value of the case, the recommended one, and some others."""
+        """Return the rows for a table: the value of the case, the recommended value, and some others."""
         stride = max(1, -(-len(self.rows) // most))
         return [
             row for i, row in enumerate(self.rows)
@@ -76,7 +76,7 @@ class Sweep:
 class DesignChoices:
     """The node whose jump is evaluated, and the allowed changes, for a case with many nodes and parameters.
 
-    :param node: node whose jump is evaluated; None: the one that moves most
+    :param node: node whose jump is evaluated; None: the node that moves most
     :param add_spring: pairs of nodes between which a spring may be added
     :param scale: parameters that may be scaled, ``section.item.key`` or ``section.*.key``
     """
@@ -90,13 +90,13 @@ class DesignChoices:
 class Study:
     """A study of a case.
 
-    :param measure: sentence: the measured quantity and the method
+    :param measure: sentence that names the measured quantity and the method
     :param unit: unit of the jump, m or rad
-    :param results: headings of the columns by name with unit
+    :param results: headings of the result columns, by column name with unit
     :param jump: jump of the unchanged case [unit]
     :param wanted: largest allowed jump [unit]; None: there is no jump to control
     :param quantity: name of the results in figures, with their displayed unit
-    :param lines: style of the results in figures, by name
+    :param lines: line style of each result in figures, by name
     :param logarithmic: whether figures show the results on a logarithmic axis
     """
 
@@ -133,7 +133,7 @@ class Study:
                 for sweep in self.sweeps for row in sweep.rows]
 
     def frame(self) -> pandas.DataFrame:
-        """Return the whole sweep as a table, with units in the column names."""
+        """Return all sweeps as one table, with units in the column names."""
         return libraries.frame(self.rows(), columns=self.columns())
 
 
@@ -150,7 +150,7 @@ def refuse_runs(runs: int | None, case: Case) -> None:
 
 
 def refuse_choices(choices: DesignChoices, case: Case) -> None:
-    """Raise NotAllowed for choices of nodes and parameters, in a study of all parameters with a single jump."""
+    """Raise NotAllowed if a node or parameters are selected, for a kind whose study covers them all."""
     asked = (("--node", [choices.node] if choices.node else []),
              ("--add-spring", [" ".join(ends) for ends in choices.add_spring]), ("--free", choices.scale))
     for option, values in asked:
@@ -168,9 +168,9 @@ def highest(case: Case, path: str) -> float:
 def bisect(
     passes: Callable[[float], bool], bad: float, good: float, relative: float = 1e-12, steps: int = 200
 ) -> tuple[float, float]:
-    """Bisect between ``bad``, which does not pass, and ``good``, which passes; geometrically between positive ends.
+    """Bisect between ``bad``, which does not pass, and ``good``, which passes; geometrically if both are positive.
 
-    :return: the bracket, narrower than ``relative`` times its larger end
+    :return: the bracket of both values; its width is less than ``relative`` times its larger end
     """
     for _ in range(steps):
         if abs(good - bad) <= relative * max(abs(good), abs(bad)):
@@ -189,11 +189,11 @@ def ranges_that_pass(
     values: Sequence[float], flags: Sequence[bool], passes: Callable[[float], bool] | None = None,
     narrow: Callable[[float, float], float] | None = None,
 ) -> list[tuple[float, float]]:
-    """Return the ranges of neighbouring values that pass, with refined ends.
+    """Return the ranges of neighbouring swept values that pass, with refined ends.
 
-    :param passes: the condition, for bisection of the ends; None: no refinement
-    :param narrow: replaces bisection: receives a value that does not pass and one that passes, returns the end that
-        passes
+    :param passes: condition for bisection of the ends; None: no refinement
+    :param narrow: replaces bisection: a function of a value that does not pass and one that passes, which returns the
+        end that passes
     """
     if narrow is None and passes is not None:
         by_bisection = passes
@@ -221,7 +221,7 @@ def ranges_that_pass(
 
 
 def grid(own: float, low: float, high: float, count: int, zero: bool = False) -> list[float]:
-    """Return a geometric grid from ``low`` to ``high``, with the value of the case and, on request, zero."""
+    """Return a geometric grid from ``low`` to ``high`` that includes the value of the case and, on request, zero."""
     values = {float(value) for value in np.geomspace(low, high, count)}
     # The exact value of the case replaces grid values near it.
     values = {value for value in values if abs(value - own) > 0.02 * abs(value)}
@@ -259,7 +259,7 @@ def write(case_name: str, study: Study, folder: Path) -> list[Path]:
 
 
 def with_notes(study: Callable[..., Study]) -> Callable[..., Study]:
-    """Make a study refuse cases without a state jump, and add notes on the temperature program."""
+    """Decorate a study: refuse a case without a state jump, and add notes on the temperature program to the remarks."""
     @wraps(study)
     def noted(case: Case, *given: Any, **settings: Any) -> Study:
         case.need_jump("'statejump control'")

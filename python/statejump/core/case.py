@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A case: header and temperature program of all kinds, and the methods of a case."""
+"""A case: its methods, and the header and the temperature program that all kinds of cases share."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -46,11 +46,11 @@ class CaseHeader(Section):
 
 @dataclass(frozen=True)
 class Origin:
-    """Origin of a case: given data and file.
+    """The data and the file from which a case was made.
 
-    :param data: sections and keys as given, without defaults
+    :param data: sections and keys as the user gave them, without defaults
     :param file: the case file; None: it was made in Python
-    :param text: its text as read; "" without a file
+    :param text: text of the file; "" without a file
     """
 
     data: Mapping[str, Any]
@@ -59,7 +59,7 @@ class Origin:
 
     @property
     def document(self) -> dict[str, Any]:
-        """The sections and keys of a file that contains all items itself."""
+        """Sections and keys of a case file that contains all items itself, without tables in other files."""
         return with_rows(self.data)
 
     @property
@@ -123,13 +123,13 @@ class Case(Section):
 
     @property
     def ending(self) -> Ending | None:
-        """End of the temperature program; None if the program ends at the reference temperature."""
+        """The last row of a temperature program that ends at another than the reference temperature; otherwise None."""
         found: Ending | None = self.__dict__["_ending"]
         return found
 
     @property
     def has_jump(self) -> bool:
-        """Whether the program, including an added return, ends at the reference temperature."""
+        """Whether the temperature program, including an added return, ends at the reference temperature."""
         return self.ending is None or self.ending.returns
 
     def check_cycles(self) -> None:
@@ -140,7 +140,7 @@ class Case(Section):
 
     @property
     def thermal_notes(self) -> tuple[str, ...]:
-        """Note on a program that does not end at the reference temperature."""
+        """A note if the temperature program does not end at the reference temperature; otherwise empty."""
         return () if self.ending is None else (self.ending.note,)
 
     @property
@@ -149,7 +149,7 @@ class Case(Section):
         return ()
 
     def need_jump(self, what: str) -> None:
-        """Raise StatejumpError if a function needs a state jump and the program does not return."""
+        """Raise StatejumpError if a function needs a state jump, but the program does not return to ΔT = 0."""
         if self.ending is not None and not self.ending.returns:
             raise StatejumpError(code="state_jump_undefined", case=self.name, remedy=self.ending.remedy, output=what,
                                  why=self.ending.where)
@@ -163,7 +163,7 @@ class Case(Section):
         return Origin(self.to_dict())
 
     def with_defaults(self) -> dict[str, Any]:
-        """Return all sections and keys with all defaults, including sections that no file has."""
+        """Return all sections and keys with their defaults, including sections that files cannot contain."""
         return super().to_dict()
 
     def to_dict(self) -> dict[str, Any]:
@@ -173,18 +173,18 @@ class Case(Section):
                 if name not in self.NOT_IN_FILE and part is not None and part != []}
 
     def to_toml(self) -> str:
-        """Return the case as the text of a case file, with the given keys and without defaults.
+        """Return the case as the text of a case file, with the keys that were given, without defaults.
 
-        :raises NotAllowed: it has histories of members, which need a file of their own
+        :raises NotAllowed: the case has temperature histories of members, which need a file of their own
         """
         text: str = _TEXT(self)
         return text
 
     def save(self, path: str | Path) -> Path:
-        """Write the case as a case file, and histories of members as a table beside it; return its path.
+        """Write the case as a case file, and temperature histories of members as a table beside it; return its path.
 
-        :raises NotWritten: it cannot be written
-        :raises NotAllowed: the name does not end with ``.toml``
+        :raises NotWritten: a file cannot be written
+        :raises NotAllowed: the name of the file does not end with ``.toml``
         """
         written: Path = _SAVED(self, Path(path))
         return written
@@ -193,18 +193,18 @@ class Case(Section):
                 trace: str | Path | Callable[[tuple[Any, ...]], object] | None = None) -> Run:
         """Run the reduced model.
 
-        :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
-        :param dynamic: with inertia, for a kind whose reduced model has none by default: the motion of a truss
+        :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
+        :param dynamic: whether to include inertia, for a kind whose reduced model has none by default (trusses)
         :param trace: CSV file with a row for every Newton iteration of a truss, or a function that is called with each
             row as a tuple; :data:`statejump.kinds.truss.trace.COLUMNS` names its entries
-        :raises StatejumpError: the kind has no such reduced model, or the run could not be finished
+        :raises StatejumpError: the kind does not have the requested reduced model, or the run could not be finished
         """
         run: Run = _RUN(self, "dynamic" if dynamic else "reduced", progress, trace=trace)
         return run
 
     def quasi_static(self) -> Any:
         """Return the paths under infinitely slow heating, for a kind whose reduced model has inertia: a loaded rib with
-        rigid links and, if its laws permit, with elastic links.
+        rigid links and, if its contact laws permit it, with elastic links.
 
         :raises StatejumpError: the kind has no such paths, or nothing loads the joint at the start
         """
@@ -213,10 +213,10 @@ class Case(Section):
     def dem(self, progress: Progress = False, *, keep_input: str | Path | None = None) -> Run:
         """Run the case in YADE, in a separate process.
 
-        :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
+        :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
         :param keep_input: folder for the script and the data of the run, to repeat it by hand
         :raises StatejumpError: the kind has no DEM, or YADE is missing or failed
-        :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
+        :raises Interrupted: Ctrl-C was pressed; ``run`` of the error has the samples so far
         """
         self.check_dem()
         run: Run = _RUN(self, "dem", progress, keep_input=keep_input)
@@ -225,7 +225,7 @@ class Case(Section):
     def check_dem(self) -> None:
         """Check the requirements of :meth:`dem` before anything is solved.
 
-        :raises StatejumpError: the kind has no DEM, the DEM cannot represent a part, or YADE is missing
+        :raises StatejumpError: the kind has no DEM, the DEM cannot represent an item, or YADE is missing
         """
         _CHECKED(self)
 
@@ -274,14 +274,14 @@ class Case(Section):
         return programs.program(self.thermal, self.period_s)
 
     def returns_s(self) -> Numbers:
-        """Return the times [s] at which all items have their first temperature again."""
+        """Return the times [s] at which the temperatures of all items have their initial values again."""
         return programs.returns_s([self.thermal], self.period_s)
 
     def check(self) -> None:
         """Raise StatejumpError for a contradiction between several keys."""
 
     def changed(self, changes: Mapping[str, Any]) -> Case:
-        """Return the case with other values, checked as a whole.
+        """Return a copy of the case with other values, checked as a whole.
 
         :param changes: values by key: ``section.key`` as in the case file, ``section.item.key`` for an item of a list,
             ``section.*.key`` for all items, ``section.joint*.key`` for matching items. None restores the default
@@ -326,7 +326,7 @@ class Case(Section):
 
 
 def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> None:
-    """Raise NotAllowed for a link whose length the temperature program reduces to zero."""
+    """Raise NotAllowed if the temperature program reduces the length of a link to zero."""
     for change in case.temperature_range_K:
         if 1 + thermal_expansion_per_K * change <= 0:
             raise NotAllowed(key, thermal_expansion_per_K, code="link_without_length", at_K=change)

@@ -25,7 +25,7 @@ def document_of(case: Case) -> dict[str, Any]:
 def text_of(case: Case) -> str:
     """Return a case as the text of a case file.
 
-    :raises NotAllowed: it has histories of members, which need a file of their own
+    :raises NotAllowed: the case has temperature histories of members, which need a file of their own
     """
     made = document_of(case)
     if made.get("thermal", {}).get("members") is not None:
@@ -34,10 +34,10 @@ def text_of(case: Case) -> str:
 
 
 def save(case: Case, path: Path) -> Path:
-    """Write a case as a case file, and histories of members as a table beside it; return its path.
+    """Write a case as a case file, and temperature histories of members as a table beside it; return its path.
 
-    :raises NotAllowed: the name ends with another suffix
-    :raises NotWritten: it cannot be written
+    :raises NotAllowed: the file name has a suffix other than ``.toml``
+    :raises NotWritten: a file cannot be written
     """
     check_suffix("path", path, ".toml")
     path = path if path.suffix else path.with_suffix(".toml")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contributions of a kind to the page of ``statejump report``: its curves, and a part of its own."""
+"""What a kind of case adds to the page of ``statejump report``: its charts, and a section of its own."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -17,9 +17,9 @@ ROUNDING = 1e-9  # fraction of its range below which a loop counts as zero
 class Axis:
     """An axis of a chart.
 
-    :param column: name of the column, in the history or in the curves of the page's part
-    :param label: its label; "": the kind's name of the column
-    :param from_start: whether to show the change since the first sample
+    :param column: name of the column, in the history or in the columns of the page section
+    :param label: label of the axis; "": the kind's name for the column
+    :param from_start: whether to show the change of the values since the first sample
     """
 
     column: str
@@ -31,9 +31,9 @@ class Axis:
 class Chart:
     """Curves of all models in one chart.
 
-    :param equal: same scale on both axes
+    :param equal: whether both axes have the same scale
     :param rings_m: radii of circles about the origin [m]
-    :param stages: whether to shade the stages of the run along the time
+    :param stages: whether to shade the stages of the run along the time axis
     :param marks: whether to mark events and the state jump
     """
 
@@ -51,11 +51,11 @@ TIME = Axis("time_s", "Time")
 
 
 class PageSection(Protocol):
-    """The part of a run's page that only one kind has: the result of its capability ``page``.
+    """The section of a run's page that only one kind of case has: the result of its capability ``page``.
 
-    :param template: file of its HTML, in which the part is ``part``
-    :param columns: curves of its charts by model and name
-    :param units: their units by name
+    :param template: HTML template, in which the variable ``part`` is this object
+    :param columns: data of the charts, by model and column name
+    :param units: units of these data, by column name
     """
 
     template: Path
@@ -67,15 +67,14 @@ class PageSection(Protocol):
         """The finding of the part, as a sentence; "": none."""
 
     def cards(self) -> list[dict[str, Any]]:
-        """Return numbers for the top of the page: ``label`` and ``values``, the latter as pairs of a name and a
-        text."""
+        """Return numbers for the top of the page: ``label`` and ``values``, which are pairs of a name and a text."""
 
     def charts(self) -> list[Chart]:
         """Return the charts of the page."""
 
     def payload(self, encoded: Callable[[np.ndarray], Any]) -> dict[str, Any]:
-        """Return the data of the drawing of nodes and joints, ``Truss`` of web/src/payload.ts. ``encoded`` converts an
-        array to a column of the page."""
+        """Return the data for the drawing of nodes and joints, ``Truss`` of web/src/payload.ts. ``encoded`` converts an
+        array to the page's encoding."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +90,7 @@ class StraightPart:
 
 
 def straight_part(x: np.ndarray, y: np.ndarray) -> StraightPart | None:
-    """Return the reversible part of a loop, a straight line (least squares); None: the loop is wide, or there is no
-    loop."""
+    """Return the least-squares straight line of a thin loop, its reversible part; None: no loop or a wide one."""
     size = float(np.ptp(y))
     if not 0 < size < np.inf or not 0 < np.ptp(x) < np.inf:
         return None

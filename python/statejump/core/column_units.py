@@ -2,8 +2,8 @@
 """Keys of the columns of a table, and conversion of their numbers to the unit of the key.
 
 A key ends with its unit: ``force_N``. A column may use another unit of the same quantity, and other spellings:
-``force_kN``, ``Force [kN]``, ``Force (kN)``, ``Force / kN``, ``Force kN``. Only then does the module look up units in
-pint, which takes some time to load.
+``force_kN``, ``Force [kN]``, ``Force (kN)``, ``Force / kN``, ``Force kN``. For a unit other than that of the key, the
+module loads the library pint, which takes some time.
 """
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ NO_UNIT = ("", "-", "1")
 class Column:
     """A column of a table.
 
-    :param name: its name in the table
-    :param key: its key
-    :param converted: converts its numbers to the unit of the key
-    :param iso: whether its cells are ISO times
+    :param name: name in the table
+    :param key: key
+    :param converted: function that converts the column's numbers to the unit of the key
+    :param iso: whether cells are ISO times
     """
 
     name: str
@@ -43,11 +43,11 @@ class Column:
 
 def matched(header: Sequence[str], known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None
             ) -> list[Column]:
-    """Return the columns of a table with their keys.
+    """Match the columns of a table to keys.
 
     :param known: keys that end with their units
-    :param words: other names of the quantity, by key
-    :raises StatejumpError: a column is unknown, has no unit or one of another quantity, or two columns have one key
+    :param words: other names of the quantity of a key, by key
+    :raises StatejumpError: a column is unknown, has no unit or a unit of another quantity, or two columns match one key
     """
     bases = {_plain(split_unit(key)[0]): key for key in known}
     for key, more in (words or {}).items():
@@ -81,7 +81,7 @@ def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column
 
 
 def _plain(base: str) -> str:
-    """Return a name without differences of spelling; single letters keep their case."""
+    """Return a column name in one spelling: separators as ``_`` and small letters. A single letter keeps its case."""
     found = re.sub(r"[\s_\-.:]+", "_", base.strip()).strip("_")
     return found if len(found) == 1 else found.lower()
 
@@ -117,9 +117,9 @@ def accepted(base: str, key: str, wanted: str) -> str:
 
 
 def conversion(unit: str, wanted: str, change: bool = False) -> Conversion | None:
-    """Return the conversion from one unit to another; None: the unit is of another quantity.
+    """Return the conversion from one unit to another; None if they are units of different quantities.
 
-    :param change: whether a temperature is a difference of two
+    :param change: whether the value is a temperature difference
     """
     if unit == wanted:
         return SAME

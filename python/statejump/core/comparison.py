@@ -35,10 +35,10 @@ class Quantity:
     """One compared number.
 
     :param name: name of the quantity
-    :param values: two values by their source (``closed_form``, ``reduced``, ``dem``; ``first``, ``second`` for two
-        runs of one model); None: the source has no value
-    :param difference: the second less the first; None: one is missing
-    :param tolerance: allowed size of the difference
+    :param values: two values by their source (``closed_form``, ``reduced``, ``dem``; ``first``, ``second`` for two runs
+        of one model); None: the source has no value
+    :param difference: second value minus first value; None: one of them is missing
+    :param tolerance: largest allowed absolute value of the difference
     """
 
     name: str
@@ -66,7 +66,7 @@ class Quantity:
 
 
 def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> Quantity:
-    """Return one row. A value that is missing on one side fails; a value that is missing on both sides passes.
+    """Return the row of a compared quantity. A value missing on one side fails; one missing on both passes.
 
     :param values: two values by their source; the first is the reference
     """
@@ -79,8 +79,8 @@ def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> 
 
 
 def share(difference: float, scale: float) -> float:
-    """Return difference / scale [-]: 0 if both are zero (nothing moves), infinite if only the scale is zero. NaN stays
-    NaN, so its row fails."""
+    """Return difference / scale [-]: 0 if both are zero, because nothing moves; infinite if only the scale is zero. NaN
+    stays NaN, so that its row fails."""
     if difference == 0 and scale == 0:
         return 0.0
     if scale > 0:
@@ -94,12 +94,12 @@ def models(name: str, unit: str, reduced: float | None, dem: float | None, toler
 
 
 def of_two(rows: Iterable[Quantity]) -> list[Quantity]:
-    """Return rows of two runs with the sources ``first`` and ``second``, for any models."""
+    """Return the compared rows of two runs of any models, with ``first`` and ``second`` as sources of the values."""
     return [replace(row, values=dict(zip((FIRST, SECOND), row.values.values()))) for row in rows]
 
 
 def sides(rows: Sequence[Quantity]) -> list[str]:
-    """Return the sources of the values in rows, in the order of ``SIDES``."""
+    """Return the sources of the compared values, in the order of ``SIDES``."""
     return [side for side in SIDES if any(side in row.values for row in rows)]
 
 
@@ -138,10 +138,9 @@ class Comparison:
         return [row.name for row in self.rows if not row.passed]
 
     def with_fe(self, rows: Iterable[Quantity], notes: Iterable[str] = ()) -> Comparison:
-        """Return the comparison with finite elements as a further column.
+        """Return the comparison with a further column for the results of finite elements.
 
-        :param rows: of the reduced model and finite elements; differences and tolerances are relative to the reduced
-            model
+        :param rows: values of the reduced model and of finite elements; differences are relative to the reduced model
         """
         more = []
         for row in rows:
@@ -160,10 +159,10 @@ class Comparison:
         return _DRAWN(self.case, list(self.models.values()), axes)
 
     def save(self, path: str | Path) -> Path:
-        """Write both models as a result file (HDF5), which :func:`statejump.read` reads; return its path.
+        """Write both runs as a result file (HDF5), which :func:`statejump.read` reads; return its path.
 
-        :raises NotWritten: it cannot be written
-        :raises NotAllowed: its name does not end with ``.h5``, or these are two runs of one model
+        :raises NotWritten: the file cannot be written
+        :raises NotAllowed: the file name does not end with ``.h5``, or both runs are of one model
         """
         if FIRST in self.models:
             raise NotAllowed("path", str(path), code="one_run_of_a_model")
@@ -186,5 +185,5 @@ class Comparison:
 
 
 def write_comparison_csv(rows: Sequence[Quantity], folder: Path) -> Path:
-    """Write the rows of a comparison as ``comparison.csv``; there must be at least one."""
+    """Write the rows of a comparison to ``comparison.csv``; there must be at least one row."""
     return write_rows(folder / "comparison.csv", table(rows))

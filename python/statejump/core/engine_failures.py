@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures of the engine as failures of the package, with the same fields and the engine's sentence."""
+"""Failures of the engine, converted to errors of the package. They keep the engine's fields and sentence."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
@@ -11,11 +11,11 @@ from statejump.core.errors import FailedRun
 
 
 class EngineFailed(FailedRun):
-    """The engine returned no result: ``[WHERE: ][WHAT: ]SENTENCE[; REMEDY]``. Its sentence has cause and remedy.
+    """The engine returned no result: ``[WHERE: ][WHAT: ]SENTENCE[; REMEDY]``. SENTENCE states cause and remedy.
 
     :param failure: the exception of the engine
-    :param what: the run that failed; "" for none
-    :param remedy: a further remedy
+    :param what: description of the run that failed; "" for none
+    :param remedy: remedy to add to the sentence
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class EngineFailed(FailedRun):
 
 @contextmanager
 def engine(what: str = "", **more: Any) -> Iterator[None]:
-    """Convert failures of the engine within this context to :class:`EngineFailed`; same parameters."""
+    """Convert failures of the engine within this context to :class:`EngineFailed`, whose parameters it accepts."""
     try:
         yield
     except _engine.EngineFailure as failure:

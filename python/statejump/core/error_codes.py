@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Codes of errors, and the parts of the sentence that all errors of one code share.
+"""Codes of errors, and for each code the parts of the sentence that all its errors share.
 
 A new error needs one entry here. Raise it with ``code="..."`` and one argument for each name in braces: the arguments
-become ``StatejumpError.details``, and the sentence is rendered from them. Codes are part of the public interface and
-do not change; sentences may change. studies/docs/make_mistakes.py lists them in docs/reference/mistakes.md.
+become ``StatejumpError.details``, and the sentence is rendered from them. Codes are part of the public interface and do
+not change; sentences may change. studies/docs/make_mistakes.py lists the codes in docs/reference/mistakes.md.
 """
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Code:
-    """Parts of the sentence ``WHAT[ BESIDE][: CAUSE][; REMEDY]``, as templates; "" where each error gives its own.
+    """Parts of the sentence ``WHAT[ BESIDE][: CAUSE][; REMEDY]``, as templates. A part that each error gives is "".
 
-    :param text: what went wrong, of a code whose errors give the whole sentence themselves
-    :param further: details for programs, which the sentence does not name
+    :param text: description of the problem, for a code whose errors give the whole sentence themselves
+    :param further: names of details that programs can read but that the sentence does not contain
     """
 
     what: str = ""

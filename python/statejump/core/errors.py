@@ -31,7 +31,7 @@ _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 def printable(text: str) -> str:
-    """Return a text without control characters: all except new lines are written as ``\\x1b``."""
+    """Return a text whose control characters, except line feeds, are written as escapes such as ``\\x1b``."""
     return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
@@ -74,7 +74,7 @@ SOME: Any = _Some()
 
 @dataclass(frozen=True)
 class Range:
-    """Range of a key: ``low`` to ``high`` [unit], without ``low`` itself if ``above``."""
+    """Allowed range of a value: from ``low`` to ``high`` [unit]; if ``above`` is true, ``low`` itself is excluded."""
 
     low: float
     high: float
@@ -99,13 +99,13 @@ class Range:
 
 @runtime_checkable
 class _OfNumpy(Protocol):
-    """A number or array of numpy, detected without numpy, which the start of the command does not load."""
+    """A number or array of numpy, recognised without importing numpy, which the start of the command does not load."""
 
     def tolist(self) -> Any: ...
 
 
 def _without_type(value: Any) -> Any:
-    """Return the content of a number or array of numpy, because numpy 2 prints its type."""
+    """Convert a number or array of numpy to plain Python values, because numpy 2 prints its types."""
     return value.tolist() if isinstance(value, _OfNumpy) and not isinstance(value, type) else value
 
 
@@ -120,21 +120,21 @@ def shown(value: Any) -> str:
 class StatejumpError(Exception):
     """Invalid input, or a run that could not be finished.
 
-    :param what: the problem, without the content of the other fields; default: that of the code
-    :param code: a key of ``CODES``; default: that of the class
+    :param what: the problem, without the content of the other fields; default: the text of the code
+    :param code: a key of ``CODES``; default: the code of the class
     :param file: the file
     :param place: name of the file in the sentence, if it is not its path alone (``results folder out/x``)
     :param case: name of the case of the run
     :param item: item of a list, for example ``node 'tip'``
     :param key: key of a file, or name of an argument
-    :param value: its value
+    :param value: value of the key
     :param allowed: allowed values: a range, or names
     :param joint: name of the joint
     :param nodes: names of nodes
     :param time_s: time [s]
     :param temperature_change_K: temperature change [K]
-    :param cause: the reason; default: that of the code, else derived from ``allowed``
-    :param remedy: the remedy; default: that of the code
+    :param cause: the reason; default: the cause of the code, else derived from ``allowed``
+    :param remedy: the remedy; default: the remedy of the code
     :param details: further fields, which the sentence of the code contains
     """
 
@@ -183,7 +183,7 @@ class StatejumpError(Exception):
         return self.what
 
     def located(self, *, file: object = None, case: str | None = None) -> StatejumpError:
-        """Set the file or case if it is unknown; return the error itself."""
+        """Set the file or the case of the error if it is not set yet; return the error itself."""
         if self.file is None and file is not None:
             self.file = str(file)
         if self.case is None and case is not None:
@@ -207,8 +207,8 @@ class StatejumpError(Exception):
         return f"{sentence}{'; ' if self.cause else ': '}{self.remedy}"
 
     def general(self) -> str:
-        """Return the sentence without the parts that differ between samples of a campaign: the given number, and the
-        time. Failures of one kind have the same sentence."""
+        """Return the sentence with placeholders for a given number and for the time, which differ between samples of a
+        campaign. Failures of one kind thus have the same sentence."""
         alike = copy(self)
         if isinstance(self.value, float):
             alike.value = SOME
@@ -218,7 +218,7 @@ class StatejumpError(Exception):
         return str(alike)
 
     def fields(self) -> dict[str, Any]:
-        """Return the failure by the names of ``FIELDS``; unknown ones are omitted."""
+        """Return the facts of the failure by the names of ``FIELDS``; unknown facts are omitted."""
         allowed = self.allowed.to_json() if isinstance(self.allowed, Range) else self.allowed and list(self.allowed)
         known = {
             "kind": self.kind, "code": self.code, "message": str(self), "file": self.file, "case": self.case,
@@ -234,7 +234,7 @@ class StatejumpError(Exception):
 
 @contextmanager
 def located(*, file: object = None, case: str | None = None) -> Iterator[None]:
-    """Set the file or case of errors within, where it is unknown."""
+    """Set the file or the case of every error that leaves this context, if the error has none."""
     try:
         yield
     except StatejumpError as failure:
@@ -266,9 +266,9 @@ class NotAllowed(StatejumpError):
     """A key has an invalid value: ``KEY = VALUE is not allowed[ BESIDE]: CAUSE``.
 
     :param key: the key
-    :param value: its value; ABSENT: the key itself is not allowed, or its value does not matter
+    :param value: value of the key; ABSENT: the key itself is not allowed, or its value does not matter
     :param cause: the reason; default: derived from ``allowed``
-    :param beside: the other key that forbids it, for example ``with start.mode = 'loaded'``
+    :param beside: the other key that forbids the value, for example ``with start.mode = 'loaded'``
     """
 
     default_code = "not_allowed"
@@ -305,12 +305,12 @@ class MissingKey(StatejumpError):
 class UnknownKey(StatejumpError):
     """A key or section is unknown: ``KEY is unknown: did you mean OTHER?``.
 
-    :param key: the key
+    :param key: the unknown key
     :param section: name of a section in the sentence, for example ``section [demm]``
-    :param value: if the key names another key: the unknown one
-    :param beside: where it is unknown, for example ``in a case of kind 'truss'``
-    :param cause: the known ones, if none is similar
-    :param remedy: the one that was probably meant
+    :param value: the unknown name, if ``key`` names another key
+    :param beside: text that tells where the key is unknown, for example ``in a case of kind 'truss'``
+    :param cause: the known keys, if none is similar
+    :param remedy: the key that the user probably meant
     """
 
     default_code = "unknown_key"
@@ -333,11 +333,11 @@ class Unreadable(StatejumpError):
 
 
 class MissingPart(Unreadable, KeyError):
-    """A requested part of a file is missing; a KeyError, as for any mapping."""
+    """A requested part of a result file is missing; the error is also a KeyError, as for a dict."""
 
 
 class FailedRun(StatejumpError):
-    """The input is valid as far as it can be checked; the run could not be finished."""
+    """A run could not be finished, although its input passed all checks."""
 
     kind = "failed_run"
     default_code = "failed_run"
@@ -351,9 +351,9 @@ class NotWritten(StatejumpError):
 
 
 class TolerancesMissed(StatejumpError):
-    """The comparison ran, and tolerances of the case are missed.
+    """The comparison was completed, but quantities exceed the tolerances of the case.
 
-    :param quantities: names of the rows that miss their tolerance
+    :param quantities: names of the quantities that exceed their tolerances
     """
 
     exit_status = 1
@@ -369,7 +369,7 @@ class Interrupted(StatejumpError):
     """The user stopped a run.
 
     :param what: the results that were stored
-    :param run: the samples so far; None: there are none
+    :param run: the samples so far; None if there are none
     """
 
     exit_status = 130
@@ -382,7 +382,7 @@ class Interrupted(StatejumpError):
 
 
 def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[str, Any]:
-    """Return another exception in the same form, in the order of ``FIELDS``; its code is its kind."""
+    """Return the fields of an exception of another class, in the order of ``FIELDS``; ``kind`` serves as its code."""
     known = {"kind": kind, "code": kind, "message": message, **details, "exit_status": exit_status}
     return {name: known[name] for name in FIELDS if known.get(name) is not None}
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Thermal expansion that depends on temperature: a table of the coefficient α.
 
-α is linear between the rows of the table, so the strain ε(ΔT) = ∫ α dΔT from 0 is a parabola there. All models have one
-coefficient and a piecewise linear temperature program. They get α₀, the largest |α| of the table, and the program of
-ε/α₀. This is the temperature change that gives the same strain with the coefficient α₀.
+α is linear between the rows of the table, so the strain ε(ΔT) = ∫ α dΔT from 0 is a parabola between two rows. All
+models use one constant coefficient and a piecewise linear temperature program. They get the coefficient α₀, the largest
+|α| of the table, and the program ε/α₀, the temperature change that causes the strain ε with α₀.
 """
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Expansion(Section):
         return [*(row for row, value in zip(rows, alpha) if value == 0), *between]
 
     def strain(self, temperature_change_K: Numbers) -> Numbers:
-        """Return the free strain [-], ∫ α dΔT from 0 to temperature changes [K] within the table; same shape."""
+        """Return the free strain [-], ∫ α dΔT from 0 to each temperature change [K], all within the table."""
         rows, alpha = np.array(self.temperature_change_K), np.array(self.thermal_expansion_per_K)
         steps = np.diff(rows)
         at_rows = np.concatenate(([0.0], np.cumsum(0.5 * (alpha[1:] + alpha[:-1]) * steps)))
@@ -56,9 +56,9 @@ class Expansion(Section):
 
 
 def check(expansion: Expansion, section: str) -> None:
-    """Raise NotAllowed for an invalid table.
+    """Raise NotAllowed for an invalid table of expansion coefficients.
 
-    :param section: prefix of its keys, "" in a table of its own
+    :param section: prefix of the keys; "" for keys in a table of their own
     """
     rows, alpha = expansion.temperature_change_K, expansion.thermal_expansion_per_K
     if len(rows) < 2 or any(b <= a for a, b in zip(rows, rows[1:])) or not rows[0] <= 0 <= rows[-1]:
@@ -70,14 +70,14 @@ def check(expansion: Expansion, section: str) -> None:
 def followed(
     expansion: Expansion, program: Thermal | MemberProgram, period_s: float, fraction: float = 1.0
 ) -> MemberProgram:
-    """Return the program of ε/α₀ of an item.
+    """Return the program ε/α₀ of an item, from its temperature program.
 
-    The strain is exact at the rows of the program. For triangles and tables it is also exact where the program crosses
-    a row of the expansion. Further times between these keep the error below CHORD of the range. For the history of a
-    member the strain is linear between the rows.
+    The strain is exact at the rows of the program. For triangles and tables it is also exact where ΔT crosses a row of
+    the expansion table. Further rows keep the error of the strain below the fraction CHORD of its range. For the
+    history of a member the strain is linear between the rows.
 
-    :param program: of the temperature change
-    :param fraction: of its temperature change
+    :param program: temperature program ΔT
+    :param fraction: fraction of ΔT that the item undergoes
     :raises NotAllowed: the program leaves the table, or is not piecewise linear
     """
     times, changes = _rows(program, period_s)
@@ -102,7 +102,7 @@ def _rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, N
 
 
 def _divided(expansion: Expansion, times: Numbers, changes: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the rows of a program with further ones, so that the strain is nearly linear between them."""
+    """Return the rows of a program with further rows between which the strain is nearly linear."""
     rows = np.array(expansion.temperature_change_K)
     strains = expansion.strain(np.concatenate((changes, rows[(rows > changes.min()) & (rows < changes.max())])))
     allowed = CHORD * (np.ptp(strains) or 1.0)

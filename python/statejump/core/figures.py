@@ -46,12 +46,12 @@ class _Grid(Protocol):
 class Constrained(ConstrainedLayoutEngine):
     """matplotlib's constrained layout without its memory leak.
 
-    Its grids refer to their children through object arrays, which the garbage collector does not follow, and the
-    children refer back. Without this class two grids of each drawing would stay in memory.
+    matplotlib's layout grids refer to their children through object arrays, which the garbage collector does not
+    follow, and the children refer back. Without this class two grids of each drawing would stay in memory.
     """
 
     def execute(self, fig: Figure) -> None:
-        """Arrange the axes of a figure, and break the references between the grids."""
+        """Arrange the axes of a figure, and break the references between layout grids."""
         for grid in (super().execute(fig) or {}).values():
             if isinstance(grid, _Grid):
                 grid.children.fill(None)
@@ -76,9 +76,9 @@ class Sheet:
     """The drawing of runs by a kind.
 
     :param panels: functions that draw the panels, row by row; None: an empty panel
-    :param columns: panels in a row
-    :param size: of the figure [inch]
-    :param title: above all panels
+    :param columns: number of panels in a row
+    :param size: width and height [inch]
+    :param title: title of the figure
     """
 
     panels: Sequence[Panel | None]
@@ -101,9 +101,9 @@ def panels(rows: int, columns: int, size: tuple[float, float], **settings: Any) 
 
 
 def drawn(case: Case, runs: Sequence[Run], axes: Axes | Sequence[Axes] | None = None) -> Figure:
-    """Draw runs of a case in one figure.
+    """Draw several runs of a case in one figure.
 
-    :param axes: axes for the panels, in their order; None: a new figure
+    :param axes: axes to draw into, one for each panel in order; None: a new figure
     :return: the figure
     """
     sheet: Sheet = require(case, RunSheet).sheet(case, runs)
@@ -127,7 +127,7 @@ def drawn(case: Case, runs: Sequence[Run], axes: Axes | Sequence[Axes] | None = 
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write ``<name>.png`` and ``<name>.svg``, the same bytes every time, and return their paths."""
+    """Write ``<name>.png`` and ``<name>.svg``, and return their paths. The same figure always gives the same bytes."""
     written = []
     with style():
         for suffix, extra in ((".png", {"dpi": 160}), (".svg", {"metadata": {"Date": None}})):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """HDF5 files of this project: built in memory, written like any other file, and checked as a whole before the HDF5
-library reads them. The library would treat damaged bytes as lengths and addresses.
+library reads them, because the library would treat damaged bytes as lengths and addresses.
 
 A file begins with a user block, ``HEAD_BYTES`` that HDF5 leaves to programs ("HDF5 File Format Specification", II.A):
 lines of text with the version of this format and the SHA-256 of everything after the block. Any HDF5 reader opens the
@@ -34,14 +34,14 @@ AGAIN = "run what made it again"
 
 
 def head(digest: str) -> bytes:
-    """Return the user block of a file whose other bytes have this SHA-256."""
+    """Return the user block for a file whose remaining bytes have this SHA-256."""
     lines = f"{FORMAT} {VERSION}\nsha256 {digest}\n"
     return lines.encode().ljust(HEAD_BYTES - 1) + b"\n"
 
 
 @contextmanager
 def made(path: Path) -> Iterator[h5py.File]:
-    """Yield an HDF5 file in memory. At the end it is written under this name, completely or not at all.
+    """Yield an HDF5 file in memory. At the end it is written to the given path, completely or not at all.
 
     Objects store neither times nor a creation order (which would add times for groups). The same contents therefore
     give the same bytes.
@@ -59,7 +59,7 @@ def made(path: Path) -> Iterator[h5py.File]:
 
 
 def is_ours(path: Path) -> bool:
-    """Return whether a file begins like one of :func:`made`, of any version."""
+    """Return whether a file begins like the files that :func:`made` writes, in any version of the format."""
     if not is_file(path):
         return False
     with path.open("rb") as stream:
@@ -68,10 +68,10 @@ def is_ours(path: Path) -> bool:
 
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
-    """Yield a file of :func:`made` for reading.
+    """Yield a file that :func:`made` wrote, for reading.
 
-    :raises Unreadable: it does not exist, is of another kind, has a newer version, or is damaged; or a requested part
-        cannot be read
+    :raises Unreadable: the file does not exist, is of another kind, has a newer version, or is damaged; or a requested
+        part cannot be read
     """
     if not is_file(path):
         raise Unreadable(code="result_file_not_found", file=path)
@@ -88,9 +88,9 @@ def opened(path: Path) -> Iterator[h5py.File]:
 
 @contextmanager
 def foreign(path: Path) -> Iterator[dict[str, h5py.Group | h5py.Dataset]]:
-    """Yield the objects of an HDF5 file of another program by path, see :func:`objects`; ``/`` is the file.
+    """Yield the objects of an HDF5 file of another program by path; ``/`` is the file itself. See :func:`objects`.
 
-    :raises Unreadable: it is no HDF5 file, or a requested part cannot be read
+    :raises Unreadable: the file is not HDF5, or a requested part cannot be read
     """
     h5py = libraries.h5py()
 
@@ -121,11 +121,11 @@ def _check(stream: IO[bytes], path: Path) -> None:
 
 
 def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]:
-    """Return the groups and data sets of a file by path, without ``/``. Before that, check that reading them stays
-    within the file and takes memory in proportion to it.
+    """Return the groups and data sets of a file by path, without the root ``/``. First check that reading them stays
+    within the file and takes memory in proportion to its size.
 
-    :raises Unreadable: an object of another kind, or with two paths; a link to an object outside of this file; numbers
-        in another file; a data set that declares more numbers than its bytes can hold
+    :raises Unreadable: an object is of another kind or has two paths, a link leads to another file, the numbers of a
+        data set are in another file, or a data set declares more numbers than its bytes can hold
     """
     h5py = libraries.h5py()
 
@@ -156,7 +156,7 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
 
 
 def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> None:
-    """Raise Unreadable if a name or a text among the attributes is not UTF-8, because no page could contain it."""
+    """Raise Unreadable if an object's name or attribute is not valid UTF-8, because no page could contain it."""
     texts = {place: place, **{f"{place}@{key}": value for key, value in item.attrs.items()}}
     for called, value in texts.items():
         try:
@@ -168,10 +168,10 @@ def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> Non
 
 
 def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> int:
-    """Raise Unreadable if the numbers are not in the file, or more are declared than its bytes can hold. Return the
-    bytes of a data set that were never written. Such a data set is valid and has its fill value there.
+    """Raise Unreadable if the numbers of a data set are in another file, or if it declares more numbers than its bytes
+    can hold. Return how many bytes were never written; there, a valid data set has its fill value.
 
-    :param size: bytes of the file, without those of unwritten data sets
+    :param size: number of bytes of the file, without the unwritten bytes of its data sets
     """
     h5py = libraries.h5py()
 

@@ -31,9 +31,9 @@ def _date(cell: str) -> datetime | None:
 
 
 def seconds(cells: Sequence[str], place: Callable[[int], tuple[int, str]], path: Path) -> np.ndarray:
-    """Return seconds from the first time.
+    """Return the seconds from the first time to each time of a column.
 
-    :raises Unreadable: a cell is no time, or only some have a time zone
+    :raises Unreadable: a cell is not a time, or only some cells have a time zone
     """
     found = []
     first = _date(cells[0])

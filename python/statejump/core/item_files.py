@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of items beside a case file, listed in its section ``[tables]``: one row per item, one column per key.
+"""Files that hold the items of a case file, one row per item and one column per key; ``[tables]`` lists the files.
 
 Text tables: a cell has the same value as in the case file; lists have blanks between their entries and no brackets; an
 empty cell is a missing key. HDF5: one data set per key, with n numbers, n texts, or n rows of either; NaN and empty
@@ -35,10 +35,10 @@ SWITCHES = {"true": True, "false": False}
 
 
 def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> Mapping[str, Any]:
-    """Return a parsed case file with an :class:`ItemTable` for every file in its section [tables]. Without this
-    section, return the document itself.
+    """Replace the file names in the section [tables] of a parsed case file by an :class:`ItemTable` for each file.
+    Without this section, return the document itself.
 
-    :param folder: base of relative paths
+    :param folder: folder to which relative paths refer
     :raises StatejumpError: a file cannot be read or is invalid: one sentence with its name
     """
     named, known = data.get(TABLES_BESIDE), fields_of(case)
@@ -66,10 +66,10 @@ def _declared(known: Mapping[str, attrs.Attribute[Any]]) -> type[Section]:
 
 
 def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> ItemTable:
-    """Return the columns of a file.
+    """Return the columns of a file of items.
 
     :param model: class of the items
-    :param words: texts of the files that were read before; those of this file are added
+    :param words: texts of the files that were read before; the texts of this file are added
     :raises StatejumpError: one sentence with the file, and line or column
     """
     read = _text if check_table(path, key, "table_file_not_found") else _hdf5
@@ -78,7 +78,7 @@ def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> 
 
 
 def _keys(names: Sequence[str], model: type[Section]) -> list[tuple[Column, Rule]]:
-    """Return the columns of a file with the rules of their keys."""
+    """Return the columns of a file of items, each with the rule of its key."""
     known = fields_of(model)
     return [(column, rule_of(known[column.key])) for column in matched(names, list(known))]
 
@@ -98,12 +98,12 @@ def _text(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
 
 
 def _texts(numbers: np.ndarray, words: Numbering) -> Texts:
-    """Return a column of texts; their codes use as few bytes as possible."""
+    """Return a column of texts whose integer codes use as few bytes as possible."""
     return Texts(once(numbers.astype(np.min_scalar_type(numbers.max(initial=0)))), words.words)
 
 
 def _joined(parts: list[np.ndarray]) -> np.ndarray:
-    """Return blocks of rows as one column; all rows of lists are as long as the longest."""
+    """Join blocks of rows to one column. Shorter rows are padded to the length of the longest row."""
     if parts[0].ndim == 1:
         return np.concatenate(parts)
     width = max(part.shape[1] for part in parts)
@@ -116,7 +116,7 @@ def _joined(parts: list[np.ndarray]) -> np.ndarray:
 def _column(
     table: Table, column: Column, rule: Rule, cells: Sequence[str], lines: Sequence[int], words: Numbering
 ) -> np.ndarray:
-    """Return the values of some cells; texts are returned as their codes."""
+    """Convert the cells of a column to the values of its key. Texts become integer codes."""
     def place(index: int) -> tuple[int, str]:
         return lines[index], column.name
 
@@ -154,7 +154,7 @@ def _column(
 
 
 def _lists(table: Table, split: Sequence[Sequence[str]], width: int, place: Place) -> np.ndarray:
-    """Return numbers by rows; a row with an empty cell is NaN."""
+    """Return the numbers of lists, one row per cell. The row of an empty cell is NaN."""
     given = [index for index, entries in enumerate(split) if entries]
     found = np.full((len(split), width), np.nan)
     found[given] = table.numbers([entry for index in given for entry in split[index]],
@@ -200,14 +200,14 @@ def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbe
 
 
 def to_cells(value: Any) -> str:
-    """Return a value of a document as a cell of a table."""
+    """Return a value of a document as the text of a table's cell."""
     if isinstance(value, (list, tuple)):
         return " ".join(map(to_cells, value))
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def write_items(items: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Write items of a document as a CSV table.
+    """Write the items of a document's list as a CSV table.
 
     :raises StatejumpError: the file cannot be written, or a text of a list contains a blank
     """

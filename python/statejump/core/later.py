@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Functions of later layers, for convenience methods: ``run.plot()`` returns a figure, but a run imports no figures.
+"""Functions of higher layers, imported on demand: ``run.plot()`` returns a figure, but a run imports no figures.
 
-The module of such a function is imported at the first call. ``tests/lint/layers.py`` checks that every function exists.
+The module of such a function is imported at its first call. ``tests/lint/layers.py`` checks that the function exists.
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any
 class Later:
     """A function that is imported when it is first called.
 
-    :param place: ``module:function``
+    :param place: name of the function as ``module:function``
     """
 
     def __init__(self, place: str) -> None:

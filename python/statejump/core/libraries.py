@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Libraries that load slowly and that few calls need. Only this module imports them, at their first use.
 
-The seconds are import times on a warm machine.
+Seconds in comments are import times with warm file caches.
 """
 from __future__ import annotations
 

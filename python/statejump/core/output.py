@@ -2,7 +2,7 @@
 """Atomic output: every file is written through this module. A file appears complete and on disk, or not at all.
 
 A file is written under a temporary name, synced, and renamed. A killed run leaves an unlocked temporary file; the next
-write of a file of that name removes it. :mod:`.results_folder` writes sets of files that belong together.
+write to the same path removes it. :mod:`.results_folder` writes sets of files that belong together.
 """
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def check_target(path: Path) -> None:
 
 
 def check_suffix(option: str, path: Path, *allowed: str) -> None:
-    """Raise NotAllowed for a file name with the suffix of another format. A name without suffix is allowed.
+    """Raise NotAllowed if the suffix of a file name belongs to another format. A name without suffix is allowed.
 
     :param option: the option that names the file
     :param allowed: suffixes, for example ``.html``
@@ -61,7 +61,7 @@ def check_suffix(option: str, path: Path, *allowed: str) -> None:
 
 
 def _sweep(path: Path) -> None:
-    """Remove the unlocked temporary files that killed runs left beside a file."""
+    """Remove the unlocked temporary files that killed runs left when they wrote the given file."""
     for name in os.listdir(path.parent):
         if name.startswith(f".{path.name}.") and name.endswith(PARTIAL):
             with suppress(OSError):
@@ -92,9 +92,9 @@ def _opened(path: Path) -> tuple[int, Path]:
 
 @contextmanager
 def write_atomically(path: Path) -> Iterator[IO[str]]:
-    """Open a text file that appears under its name when it is complete and on disk.
+    """Open a text file that appears under its name only when it is complete and on disk.
 
-    :raises NotWritten: it cannot be written; an earlier file remains
+    :raises NotWritten: the file cannot be written; an earlier one remains
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "w", encoding="utf-8", newline="", closefd=False) as stream:
@@ -102,9 +102,9 @@ def write_atomically(path: Path) -> Iterator[IO[str]]:
 
 
 def write_bytes(path: Path, content: bytes) -> Path:
-    """Write a file that appears under its name when it is complete and on disk; return the path.
+    """Write a file that appears under its name only when it is complete and on disk; return the path.
 
-    :raises NotWritten: it cannot be written; an earlier file remains
+    :raises NotWritten: the file cannot be written; an earlier one remains
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "wb", buffering=0, closefd=False) as stream:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Formulas that checks, drawings and time steps need in Python, each written once. All accept numbers and arrays, in SI
-units. The models themselves are in the engine and the plugin."""
+"""Formulas that checks, drawings and time steps need in Python. Each formula is implemented once, in SI units, for
+numbers and arrays. The models themselves are in the engine and the plugin."""
 from __future__ import annotations
 
 from typing import TypeVar
@@ -17,7 +17,7 @@ def effective_young_modulus_Pa(young_modulus_Pa: Value, poisson_ratio: Value) ->
 
 
 def shear_over_normal_stiffness(poisson_ratio: Value) -> Value:
-    """Return k_t/k_n = 4 G*/E* = 2 (1 - ν)/(2 - ν) of a contact of two parts of one material (Mindlin)."""
+    """Return k_t/k_n = 4 G*/E* = 2 (1 - ν)/(2 - ν) of a contact of two parts of the same material (Mindlin)."""
     ratio: Value = 2 * (1 - poisson_ratio) / (2 - poisson_ratio)
     return ratio
 
@@ -29,7 +29,7 @@ def hertz_stiffness_N_per_m15(effective_young_modulus_Pa: Value, effective_radiu
 
 
 def conforming_radius_m(journal_radius_m: Value, bearing_radius_m: Value, radial_clearance_m: Value) -> Value:
-    """Return the effective radius of a journal in its bearing [m], R1 R2/(R2 - R1)."""
+    """Return R1 R2/(R2 - R1) [m], the effective radius of a journal of radius R1 in a bearing of radius R2."""
     radius_m: Value = journal_radius_m * bearing_radius_m / radial_clearance_m
     return radius_m
 
@@ -48,7 +48,7 @@ def hertz_tangent_N_per_m(force_N: Value, hertz_stiffness: Value) -> Value:
 
 def hertz_tangent_at_depth_N_per_m(effective_young_modulus_Pa: Value, effective_radius_m: Value,
                                    depth_m: Value) -> Value:
-    """Return dF/dδ [N/m] of F = K δ^1.5 at a depth, 2 E* sqrt(R δ)."""
+    """Return the stiffness dF/dδ = 2 E* sqrt(R δ) [N/m] of the Hertz law F = K δ^1.5 at a depth δ."""
     stiffness_N_per_m: Value = 2 * effective_young_modulus_Pa * np.sqrt(effective_radius_m * depth_m)
     return stiffness_N_per_m
 
@@ -60,8 +60,8 @@ def axial_stiffness_N_per_m(young_modulus_Pa: Value, cross_section_area_m2: Valu
 
 
 def apex_m(left_m: Value, right_m: Value, base_m: Value) -> tuple[Value, Value]:
-    """Return the point at which two links meet above a base from (0, 0) to (base, 0): x and y [m]; y is 0 if they do
-    not meet.
+    """Return x and y [m] of the point at which two links meet above a base from (0, 0) to (base, 0); y is 0 if both
+    links are too short.
 
     :param left_m: length of the link from (0, 0)
     :param right_m: length of the link from (base, 0)

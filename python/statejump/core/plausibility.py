@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values that are allowed but implausible, mostly because of wrong units. Each kind gives one warning of the run, about
-the worst item."""
+"""Warnings about allowed but implausible values, mostly due to wrong units: one for each kind of value, about the worst
+item."""
 from __future__ import annotations
 
 import warnings
@@ -19,7 +19,7 @@ def _others(count: int) -> str:
 
 
 def clearances(what: str, names: Sequence[str], clearance_m: np.ndarray, radius_m: np.ndarray) -> Iterable[str]:
-    """Yield a sentence on joints whose clearance exceeds the radius of the part inside.
+    """Yield a sentence about joints whose clearance exceeds the radius of the inner part.
 
     :param what: type of the joints, for example ``revolute``
     """
@@ -40,10 +40,10 @@ def moduli(what: str, names: Sequence[str], young_modulus_Pa: np.ndarray) -> Ite
 
 
 def strains(what: str, names: Sequence[str], strain: np.ndarray, cause: str) -> Iterable[str]:
-    """Yield a sentence on items with a strain above 10 %.
+    """Yield a sentence about items with a strain of more than 10 %.
 
     :param strain: largest absolute strain of each item
-    :param cause: for example ``thermal``
+    :param cause: cause of the strain, for example ``thermal``
     """
     found = np.flatnonzero(strain > LARGEST_STRAIN)
     if len(found):
@@ -61,10 +61,10 @@ def warn_of_reference(key: str, reference_temperature_K: float) -> None:
 
 
 def axial_strains(names: Sequence[str], axial_force_N: np.ndarray, rigidity_N: np.ndarray) -> Iterable[str]:
-    """Yield a sentence on links that forces strain by more than 10 %.
+    """Yield a sentence about links whose axial strain due to forces exceeds 10 %.
 
     :param axial_force_N: (samples, links)
-    :param rigidity_N: E A of every link
+    :param rigidity_N: axial rigidity E A of every link
     """
     if axial_force_N.size:
         with np.errstate(invalid="ignore"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Progress of long runs, for a function of the caller or on standard error."""
+"""Progress of long runs, reported to a function of the caller or shown on standard error."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -21,9 +21,9 @@ def silent(share: float) -> None:
 
 @contextmanager
 def shown(progress: bool | OnProgress, label: str) -> Iterator[OnProgress]:
-    """Yield a function of the finished fraction, 0 to 1.
+    """Yield a function that receives the finished fraction of a run, 0 to 1.
 
-    :param progress: False: it does nothing; True: it shows the fraction on standard error; else the function to call
+    :param progress: False: that function does nothing; True: it shows the fraction on standard error; else it is called
     """
     if callable(progress):
         yield progress
@@ -35,7 +35,7 @@ def shown(progress: bool | OnProgress, label: str) -> Iterator[OnProgress]:
 
 
 def console(**settings: Any) -> Console:
-    """Return a console of rich that prints plain text, without styles and control characters."""
+    """Return a console of the library rich that prints plain text, without styles and control characters."""
     from rich.console import Console  # 0.1 s; a run in Python prints nothing
     from rich.text import Text  # as Console
 
@@ -49,15 +49,14 @@ def console(**settings: Any) -> Console:
 
 @contextmanager
 def bar(label: str) -> Iterator[OnProgress]:
-    """Yield a function that moves a bar on a terminal, and prints a line every 10 % elsewhere; on standard error."""
+    """Yield a function that shows the finished fraction on standard error: a bar on a terminal, else lines."""
     with on_console(console(stderr=True), label) as on_progress:
         yield on_progress
 
 
 @contextmanager
 def on_console(console: Console, label: str) -> Iterator[OnProgress]:
-    """Yield a function that shows the finished fraction on a console of rich: a bar on a terminal, else a line every 10
-    %."""
+    """Yield a function that shows the finished fraction on a console: a bar on a terminal, else lines."""
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn  # as Console
 
     if console.is_terminal:
@@ -80,11 +79,12 @@ def on_console(console: Console, label: str) -> Iterator[OnProgress]:
 
 
 def one_of(on_progress: OnProgress, done: int, total: int) -> OnProgress:
-    """Return the progress function of a run after ``done`` of ``total`` equal runs; it reports their total fraction."""
+    """Return the progress function of one of ``total`` equal runs after ``done`` runs; it reports the total
+    fraction."""
     return lambda share: on_progress((done + share) / total)
 
 
 def counted(on_progress: OnProgress, total: int) -> Callable[[], None]:
-    """Return a function to call after each run; it reports the finished fraction of all runs."""
+    """Return a function to call after each of ``total`` runs. It reports the finished fraction of all runs."""
     finished = count(1)
     return lambda: on_progress(next(finished) / total)

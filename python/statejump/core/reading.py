@@ -14,9 +14,9 @@ from statejump.core.errors import Unreadable, size
 
 
 def is_file(path: Path) -> bool:
-    """Return whether there is a file that is no folder, device or pipe.
+    """Return whether a path is a regular file, not a folder, device or pipe.
 
-    :raises Unreadable: the system does not report it: a folder without search permission, or a name that is too long
+    :raises Unreadable: the system cannot tell, because a folder has no search permission or the name is too long
     """
     try:
         return stat.S_ISREG(path.stat().st_mode)
@@ -27,14 +27,14 @@ def is_file(path: Path) -> bool:
 
 
 def check_size(path: Path, largest_bytes: int, beside: str = "") -> None:
-    """Raise Unreadable for a file that is too large to be read as a whole; ``beside`` adds a hint."""
+    """Raise Unreadable if a file is too large to be read as a whole. ``beside`` is a hint for the message."""
     if path.stat().st_size > largest_bytes:
         raise Unreadable(code="file_too_large_to_read", file=path, largest=size(largest_bytes), why=beside)
 
 
 def finite_number(text: str) -> float | None:
-    """Return the finite number of a text; None if it has none. Python accepts 1_000 as a number, files must not contain
-    it."""
+    """Return the finite number in a text; None if the text is not one. Python accepts 1_000 as a number, but files must
+    not contain it."""
     try:
         value = float(text)
     except ValueError:
@@ -44,9 +44,9 @@ def finite_number(text: str) -> float | None:
 
 @contextmanager
 def open_csv(path: Path, encoding: str = "utf-8-sig") -> Iterator[TextIO]:
-    """Open a CSV file for one of the readers of ``csv``. A fault found during reading becomes one sentence.
+    """Open a CSV file for a reader of the module ``csv``. A fault found during reading is raised as one sentence.
 
-    :raises Unreadable: it may not be read, is not UTF-8 text or not CSV
+    :raises Unreadable: the file may not be read, is not UTF-8 text, or is not CSV
     """
     try:
         with path.open(newline="", encoding=encoding) as stream:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results folder of a run: one run at a time, and all of its files or none.
+"""Results folder of a run. One run at a time uses it, and gets all of its files into it or none.
 
 A run locks the folder and writes into its subfolder ``.ID.partial``. When all files are complete and on disk, the run
 renames the subfolder to ``.ID.ready``, and moves the files to their final paths. After a kill, the next run in the
@@ -34,11 +34,11 @@ OWNER = ".case.json"
 
 @dataclass(frozen=True)
 class Results:
-    """Root and options of results folders.
+    """Root of the results, and options for the folders in it.
 
-    :param root: contains one folder per case
-    :param wait: wait for another run in the same folder instead of being refused
-    :param force: replace results of another case
+    :param root: folder that contains one folder per case
+    :param wait: whether to wait for another run in the same folder, instead of being refused
+    :param force: whether to replace results of another case
     """
 
     root: Path
@@ -47,11 +47,10 @@ class Results:
 
     @contextmanager
     def folder(self, name: str, case: Case | None = None) -> Iterator[ResultsFolder]:
-        """Create (if needed), lock and yield ``root/name``. At the end, unpublished files and empty new folders are
-        removed.
+        """Create (if needed), lock and yield ``root/name``. At the end, remove unpublished files and empty new folders.
 
         :param case: the case of the results; None: the folder has the name of a file
-        :raises NotWritten: it is not writable, another run uses it, or it contains results of another case
+        :raises NotWritten: the folder is not writable, another run uses it, or it contains results of another case
         """
         path = self.root / name
         missing = [folder for folder in (path, *path.parents) if not os.path.exists(folder)]
@@ -65,9 +64,9 @@ class Results:
 
     @contextmanager
     def _held(self, path: Path, case: Case | None, made: bool) -> Iterator[ResultsFolder]:
-        """The implementation of :meth:`folder`.
+        """Lock and yield a folder; the implementation of :meth:`folder`.
 
-        :param made: the folder did not exist: it is removed if it stays empty
+        :param made: whether the folder is new; a new folder is removed if it stays empty
         """
         try:
             descriptor = self._locked(path)
@@ -95,7 +94,7 @@ class Results:
             os.close(descriptor)
 
     def _locked(self, path: Path) -> int:
-        """Return an open descriptor of the folder that holds its lock. The kernel releases it with the process."""
+        """Return an open descriptor of the folder that holds its lock, which ends with the process."""
         while True:
             path.mkdir(parents=True, exist_ok=True)
             try:
@@ -120,9 +119,9 @@ class Results:
 class ResultsFolder:
     """A locked results folder.
 
-    :param path: the folder for readers
-    :param staged: folder of unpublished files
-    :param case: the case of the results; None: no case
+    :param path: the folder that users read
+    :param staged: folder of files that are not published yet
+    :param case: case of the results; None: the results belong to no case
     """
 
     path: Path
@@ -137,11 +136,11 @@ class ResultsFolder:
             raise _unusable(self.path, "no_space_left", OTHER, needed=size(needed_bytes), free=size(free))
 
     def publish(self, written: Sequence[Path] = ()) -> list[Path]:
-        """Publish all staged files at once; return their new paths.
+        """Publish all staged files at once; return the paths to which they move.
 
         Further files can be staged and published afterwards.
 
-        :raises NotWritten: the files could not be synced to disk, and none appears; or a file could not be moved
+        :raises NotWritten: the files could not be synced to disk, and none is published; or a file could not be moved
         """
         ready = self.path / f"{self.staged.name.removesuffix(PARTIAL)}{READY}"
         if self.case is not None:
@@ -169,7 +168,7 @@ class ResultsFolder:
 
 
 def _sync(paths: Sequence[Path]) -> None:
-    """Sync files and folders to disk; many of them in parallel, because file systems combine these calls."""
+    """Sync files and folders to disk, many of them in parallel, because file systems combine simultaneous calls."""
     if len(paths) < SIDE_BY_SIDE:  # the threads cost more than they save
         for path in paths:
             synced(path)
@@ -201,7 +200,7 @@ def _remove(folder: Path, ignore_errors: bool = False) -> None:
 
 
 def _recover(path: Path) -> None:
-    """Move the published files of a killed run to their final paths, and remove its unpublished ones."""
+    """Move the published files of a killed run to their final paths, and remove its unpublished files."""
     for ready in sorted(path.glob(f".*{READY}")):
         _move(ready, path)
     for left in path.glob(f".*{PARTIAL}"):
@@ -214,7 +213,7 @@ def _unusable(path: Path, code: str, remedy: str, cause: str | None = None, **de
 
 
 def _known(folder: Path) -> dict[str, str]:
-    """Return the record of the case in a folder; empty: no readable record."""
+    """Return the record of which case owns a results folder; an empty dict if there is no readable record."""
     try:
         found = json.loads((folder / OWNER).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -223,7 +222,7 @@ def _known(folder: Path) -> dict[str, str]:
 
 
 def _file(folder: Path, case: Case) -> str:
-    """Return the case file relative to the folder; "": the case was made in Python."""
+    """Return the path of the case file relative to the results folder; "" if the case was made in Python."""
     file = case.origin.file
     return "" if file is None else os.path.relpath(file.resolve(), folder.resolve())
 
@@ -234,7 +233,7 @@ def _checksum(case: Case) -> str:
 
 
 def _check_owner(folder: Path, case: Case) -> None:
-    """Raise NotWritten if the folder holds results of another case from another file."""
+    """Raise NotWritten if the folder contains results of another case that comes from another file."""
     known = _known(folder)
     if not known or (known.get("file") and known.get("file") == _file(folder, case)):
         return

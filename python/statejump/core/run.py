@@ -37,9 +37,9 @@ _DRAWN, _HTML = Later("statejump.core.figures:drawn"), Later("statejump.core.htm
 
 
 class Parts(dict[str, Any]):
-    """Parts of a file by name. The error for a missing part is one sentence.
+    """Parts of a result file by name. A missing part raises an error with a one-sentence message.
 
-    :param place: path of the parts in the file
+    :param place: path of these parts in the file
     """
 
     def __init__(self, parts: Mapping[str, Any], place: str, file: object) -> None:
@@ -55,9 +55,9 @@ class Parts(dict[str, Any]):
 
 
 class Named(dict[str, Any]):
-    """Columns or numbers of a run by name. The error for an unknown name suggests a known one.
+    """Columns or numbers of a run by name. An unknown name raises an error that suggests a known name.
 
-    :param what: noun for a value, as ``column``
+    :param what: noun that messages use for a value, for example ``column``
     """
 
     def __init__(self, values: Mapping[str, Any], what: str) -> None:
@@ -69,7 +69,7 @@ class Named(dict[str, Any]):
 
 
 class MissingName(UnknownKey, KeyError):
-    """Unknown name of a column or number of a run; a KeyError, as for any mapping."""
+    """The name of a column or number of a run is unknown. The error is also a KeyError, as for a dict."""
 
     def __init__(self, what: str, name: Any, known: Sequence[str]) -> None:
         ends = [path for path in known if path.rpartition("/")[2] == name]
@@ -79,10 +79,10 @@ class MissingName(UnknownKey, KeyError):
 
 @dataclass(frozen=True)
 class Column:
-    """Values over the samples of a run: one per sample, or (samples, items), or (samples, items, 3).
+    """Values over the samples of a run, with the shape (samples), (samples, items) or (samples, items, 3).
 
-    ``items`` is the key of the list of names of the second axis, see :attr:`Run.names`.
-    ``labels``: the values are indices of this list. ``note`` gives the source, if it is not obvious.
+    ``items`` is the key in :attr:`Run.names` under which the names of the items are listed. If there are ``labels``,
+    the values are indices into them. ``note`` gives the source of the values, if it is not obvious.
     """
 
     values: np.ndarray
@@ -100,10 +100,9 @@ class Column:
 
 @dataclass(frozen=True)
 class Event:
-    """An event of a run. ``joint`` is the contact or joint, "" for none.
+    """An event of a run. ``joint`` is the name of the contact or joint, or "" if the event has none.
 
-    ``time_uncertainty_s``: 0 for an instant that the model locates, else half the distance of the two
-    samples between which it lies.
+    ``time_uncertainty_s`` is 0 if the model locates the instant, else half the interval of samples that contains it.
     """
 
     kind: str
@@ -116,7 +115,7 @@ class Event:
 class Events(Sequence[Event]):
     """Events of a run in order of time.
 
-    :param events: the events, or a function that returns them at the first access
+    :param events: the events, or a function that returns them when they are first accessed
     """
 
     def __init__(self, events: Sequence[Event] | Callable[[], Sequence[Event]]) -> None:
@@ -163,9 +162,9 @@ def _raised(error: StatejumpError) -> Any:
 
 @dataclass(frozen=True)
 class Run:
-    """A run of one model of a case. All columns have the length of its ``time_s``.
+    """A run of one model of a case. Every column has one value for each time in ``time_s``.
 
-    A run can be pickled and copied; the copy has no ``native`` and, between samples, is linear.
+    A run can be pickled and copied. The copy has no ``native`` and interpolates linearly between samples.
 
     :param model: ``reduced`` or ``dem``
     :param history: columns over time
@@ -173,15 +172,15 @@ class Run:
     :param links: columns of links, (samples, links)
     :param contacts: columns of contacts, (samples, contacts) and (samples, contacts, 3)
     :param events: events in order of time
-    :param summary: summary numbers; their names end in their units. NaN: did not happen
-    :param names: names of the items of the second axes of columns
-    :param case_of: returns the case of the run; a case in a file is read at the first access
+    :param summary: summary numbers; their names end in their units. NaN: the event did not happen
+    :param names: names of the items on the second axis of columns
+    :param case_of: function that returns the case; a case in a file is read at the first call
     :param warnings: limits of the model that the run met
-    :param complete: False: the run was interrupted and has its first samples only
-    :param about: data on a DEM run: version of YADE, steps, seconds
-    :param native: result of the model itself (the path of a solver); None: the run was read from a file
+    :param complete: False: the run was interrupted and has only its first samples
+    :param about: data about a DEM run: version of YADE, number of steps, run time [s]
+    :param native: the model's own result (the path of a solver); None: the run was read from a file
     :param kind: kind of the case, which avoids a call of ``case_of``
-    :param sampler: returns the run at other times [s], if the model can compute it exactly
+    :param sampler: function that returns the run at other times [s], if the model can compute it exactly
     """
 
     model: str
@@ -242,12 +241,13 @@ class Run:
         return isinstance(name, str) and self._found(name) is not None
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return the values of a column of history or energy, or of any by its path. :raises KeyError: there is none"""
+        """Return a column by its name in history or energy, or any column by its path. :raises KeyError: there is
+        none"""
         found = self._found(name)
         return (self.column(name) if found is None else found).shown
 
     def column(self, path: str) -> Column:
-        """Return a column by its path, as ``history/time_s``. :raises KeyError: there is none"""
+        """Return a column by its path, for example ``history/time_s``. :raises KeyError: there is no such column"""
         group, _, name = path.partition("/")
         found: Column | None = getattr(self, group).get(name) if group in GROUPS else None
         if found is None:
@@ -255,8 +255,9 @@ class Run:
         return found
 
     def at(self, times_s: float | Sequence[float] | np.ndarray) -> Run:
-        """Return the run at one or several other times [s]. It is exact if the model can compute it. Otherwise it is
-        linear between samples, with the labels of the earlier one. :raises NotAllowed: a time is no finite number"""
+        """Return the run at one or several other times [s], exactly if the model can compute it. Otherwise numbers are
+        interpolated linearly between samples, and labels are those of the earlier sample. :raises NotAllowed: a time is
+        no number"""
         try:
             asked = np.atleast_1d(np.asarray(times_s, dtype=float))
         except (TypeError, ValueError):
@@ -291,8 +292,8 @@ class Run:
         return replace(self, **groups, native=None)
 
     def flat(self, groups: Sequence[str] = ("history", "energy")) -> dict[str, np.ndarray]:
-        """Return columns with one value per sample, in the order of the CSV files: ``name``, ``name[item]``,
-        ``name[item].x``. Those of links and contacts begin with ``links/`` and ``contacts/``."""
+        """Return columns with one value per sample, in the order of the CSV files. Their names are ``name``,
+        ``name[item]`` or ``name[item].x``; those of links and contacts begin with ``links/`` and ``contacts/``."""
         for group in groups:
             if group not in GROUPS:
                 raise UnknownKey(f"group {group!r}", **suggestion(group, GROUPS))
@@ -309,7 +310,7 @@ class Run:
         return found
 
     def _ordered(self, names: Mapping[str, Any]) -> list[str]:
-        """Return names of columns in the order of the kind; unknown names come last, sorted."""
+        """Return column names in the order that the kind of case defines; unknown names come last, sorted."""
         known = _COLUMNS(self.kind or self.definition.kind)
         return [name for name in known if name in names] + sorted(set(names).difference(known))
 
@@ -336,8 +337,8 @@ class Run:
     def save(self, path: str | Path) -> Path:
         """Write the run as a result file (HDF5), which :func:`statejump.read` reads; return its path.
 
-        :raises NotWritten: it cannot be written
-        :raises NotAllowed: its name does not end with ``.h5``
+        :raises NotWritten: the file cannot be written
+        :raises NotAllowed: the file name does not end with ``.h5``
         """
         written: Path = _SAVED(Path(path), self.model, self.definition, {self.model: self})
         return written
@@ -345,7 +346,7 @@ class Run:
     def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
         """Draw the run.
 
-        :param axes: axes to draw into, one or several: the figure's panels in their order; None: a new figure
+        :param axes: one or several axes to draw into, for the panels of the figure in order; None: a new figure
         :return: the figure; matplotlib's backend does not change
         """
         return _DRAWN(self.definition, [self], axes)
@@ -359,7 +360,7 @@ class Run:
 
 
 def columns_of(columns: Columns) -> tuple[dict[str, Column], dict[str, Column]]:
-    """Return columns with one value per sample as history and, separately, energies (names that end in ``_J``)."""
+    """Divide columns with one value per sample into history and energies, whose names end in ``_J``."""
     plain: dict[str, Column] = {}
     energy: dict[str, Column] = {}
     for name, values in columns.items():
@@ -377,8 +378,8 @@ _OF_THE_DAY = ("wall_time_s", "cpu_time_s")
 
 
 def numbers_of(values: Mapping[str, Any]) -> dict[str, float]:
-    """Return the summary numbers of a run from the data of a model. None becomes NaN. Texts and numbers that differ
-    between repeated runs are omitted."""
+    """Return the summary numbers of a run from the data of a model. None becomes NaN. Texts are omitted, and so are
+    numbers that differ between repeated runs."""
     return {
         name: float("nan") if value is None else float(value) for name, value in values.items()
         if (value is None or isinstance(value, (int, float))) and name not in _OF_THE_DAY
@@ -397,9 +398,9 @@ def change(columns: Mapping[str, Any], name: str) -> float:
 def energy_residue_J(
     columns: Mapping[str, Any], supplied: Sequence[str], stored: Sequence[str], dissipated: Sequence[str]
 ) -> float:
-    """Return supplied minus stored minus dissipated energy over a whole run [J].
+    """Return supplied minus stored minus dissipated energy [J], for the whole run.
 
-    :param columns: columns by name; a missing one counts as 0
+    :param columns: energy columns by name; a missing column counts as 0
     :param supplied: names of the columns of supplied energy, such as ``thermal_work_J``; the other parameters likewise
     """
     total = [sum(change(columns, name) for name in names) for names in (supplied, stored, dissipated)]
@@ -411,8 +412,7 @@ _AMOUNT = re.compile(r"[-+]?\d\S*( \S+)?")
 
 
 def warnings_of(runs: Iterable[Run]) -> list[str]:
-    """Return the warnings of runs of one case. If sentences of two runs differ only in numbers, the first is
-    kept."""
+    """Return the warnings of the runs of a case. Of sentences that differ only in numbers, the first is kept."""
     found: list[str] = []
     for run in runs:
         known = {_AMOUNT.sub("", warning) for warning in found}

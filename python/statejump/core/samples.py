@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""File of samples of a running model: a line with the names of the columns as a JSON list, then rows of numbers in
-double precision. Readers ignore an incomplete last row."""
+"""File in which a running model stores its samples. The first line has the column names as a JSON list; rows of numbers
+in double precision follow. Readers ignore an incomplete last row."""
 from __future__ import annotations
 
 import json
@@ -20,15 +20,15 @@ def names_line(names: Iterable[str]) -> bytes:
 
 
 def rows_of(columns: Sequence[np.ndarray]) -> bytes:
-    """Return the bytes of rows, from columns of equal length; an array with two axes holds several columns."""
+    """Return the bytes of rows of samples, from columns of equal length; a 2-D array holds several columns."""
     return np.column_stack(columns).astype(NUMBER).tobytes()
 
 
 def read_samples(path: Path, whole: bool = True) -> dict[str, np.ndarray]:
-    """Return the columns of a file.
+    """Return the columns of a file of samples.
 
-    :param whole: raise an error if the last row is incomplete; else omit this row
-    :raises Unreadable: the file contains no samples, or other ones
+    :param whole: whether an incomplete last row is an error; otherwise it is omitted
+    :raises Unreadable: the file contains no samples, or its rows do not match its header
     """
     with path.open("rb") as stream:
         names = json.loads(stream.readline() or b"[]")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temporary folders that do not outlive a killed run: a folder is locked while a run uses it, and each new run removes
-unlocked ones."""
+"""Temporary folders that do not outlive a killed run. A run locks its folder while it uses the folder, and each new run
+removes unlocked folders."""
 from __future__ import annotations
 
 import fcntl
@@ -20,7 +20,7 @@ YOUNG_S = 60.0  # a younger folder may not be locked yet
 def scratch() -> Iterator[Path]:
     """Yield a new folder below ``$TMPDIR``, removed at the end.
 
-    :raises OSError: it cannot be created
+    :raises OSError: the folder cannot be created
     """
     _sweep(Path(tempfile.gettempdir()))
     folder = Path(tempfile.mkdtemp(prefix=PREFIX))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a structure gets to its first equilibrium: one key, ``start.friction``, for all kinds and models."""
+"""How a structure reaches its first equilibrium: the key ``start.friction``, the same for all kinds and models."""
 from __future__ import annotations
 
 from typing import Any
@@ -12,7 +12,7 @@ STUCK, FRICTIONLESS = "stuck", "frictionless"
 
 
 def start_friction() -> Any:
-    """Return the key. The default is stuck, because a structure is assembled before it is loaded."""
+    """Declare the key ``start.friction``. The default is stuck, because a structure is assembled before loading."""
     return choice(STUCK, (STUCK, FRICTIONLESS),
                   "joints hold where they were assembled; frictionless: friction begins after loads and preloads act")
 
@@ -25,8 +25,8 @@ class Start(Section):
 
 
 def carried(friction: Any, limit: Any) -> dict[str, float]:
-    """Return the summary entries on friction at the start: largest force of any joint [N], largest ratio to its limit
-    [-]."""
+    """Return the summary of friction at the start: largest friction force [N], largest ratio of a joint's friction
+    force to its limit [-]."""
     force, most = np.abs(np.atleast_1d(friction)), np.atleast_1d(limit)
     share = np.divide(force, most, out=np.zeros_like(force), where=most > 0)
     return {"start_friction_N": float(force.max(initial=0.0)),

@@ -55,11 +55,11 @@ def quoted(text: object) -> str:
 
 
 class Table:
-    """A table while it is read.
+    """A text table that is being read.
 
-    :param path: the file
-    :param separator: of its cells
-    :param header: names of its columns
+    :param path: file of the table
+    :param separator: separator of the cells
+    :param header: names of the columns
     """
 
     def __init__(self, path: Path, stream: TextIO) -> None:
@@ -98,7 +98,8 @@ class Table:
                 return
 
     def _with_units(self, names: Sequence[str]) -> Sequence[str]:
-        """Return the names of the columns with the units of a units row, which is then removed from the table."""
+        """Return the column names with the units of the units row, which is then removed; unchanged without such a
+        row."""
         row = self._first[0][self._counts:] if self._first else []
         units = [cell.strip().strip("[]()").strip() for cell in row[:len(names)]]
         if len(units) < len(names) or any(_NUMERIC.search(unit) for unit in units) or not any(units):
@@ -135,8 +136,8 @@ class Table:
         return ",", iter(())
 
     def _labview(self, stream: TextIO) -> tuple[str, Iterator[str]]:
-        """Return the separator of a measurement of LabVIEW, and its lines from the column names on. The lines above
-        contain the units of the columns. Comments behind the last column are omitted."""
+        """Return the separator of a measurement file of LabVIEW, and its lines from the row of column names on. Units
+        of the columns are taken from the lines before that row. Comments after the last column are omitted."""
         separator = "\t"
         labels: dict[str, list[str]] = {}
         self._skipped += 1
@@ -164,9 +165,9 @@ class Table:
         return self._skipped + int(self._reader.line_num)
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
-        """Return the rows below the header, with their line numbers.
+        """Yield the rows below the header, with their line numbers.
 
-        :raises Unreadable: a row and the header differ in their number of cells
+        :raises Unreadable: the number of cells of a row differs from that of the header
         """
         width, counted = len(self.header), None
         for row in chain(self._first, self._reader):
@@ -207,11 +208,11 @@ class Table:
             yield lines, rows
 
     def numbers(self, cells: Sequence[str], place: Place, empty: bool = False) -> np.ndarray:
-        """Return the finite numbers of some cells.
+        """Convert cells to finite numbers.
 
-        :param place: line and column of the i-th cell
-        :param empty: whether a cell may be empty; it is NaN
-        :raises Unreadable: one of them is no finite number; the message has line and column
+        :param place: function that returns line and column of the i-th cell
+        :param empty: whether a cell may be empty; an empty cell becomes NaN
+        :raises Unreadable: a cell is not a finite number; the message has its line and column
         """
         joined = "".join(cells)
         if "," in joined and "." in joined:
@@ -242,7 +243,7 @@ class Table:
         return value
 
     def _without_groups(self, cells: Sequence[str], place: Place) -> list[str]:
-        """Return cells without marks between thousands, if they also have a decimal mark."""
+        """Remove the marks between groups of thousands from cells that contain both a comma and a point."""
         found = []
         for index, cell in enumerate(cells):
             if _GROUPS[0].fullmatch(cell.strip()):
@@ -300,7 +301,7 @@ def _words(line: str) -> list[str]:
 
 
 def _joined(words: Iterable[str]) -> list[str]:
-    """Return names of columns from the words of a header; a unit in brackets belongs to the word before it."""
+    """Join the words of a header to column names. A unit in brackets belongs to the word before it."""
     found: list[str] = []
     depth = 0
     for word in words:
@@ -313,7 +314,7 @@ def _joined(words: Iterable[str]) -> list[str]:
 
 
 class _BlankSeparated:
-    """Rows of cells between blanks, with the interface of a reader of ``csv``."""
+    """Reads rows of cells that are separated by blanks, with the interface of a reader of the module ``csv``."""
 
     def __init__(self, lines: Iterable[str]) -> None:
         self._lines = iter(lines)
@@ -329,7 +330,7 @@ class _BlankSeparated:
 
 
 def _encoding(path: Path) -> str:
-    """Return the encoding of a text file. A file in another encoding is refused while it is read."""
+    """Return the encoding of a text file. If the guess is wrong, an error is raised when the file is read."""
     with path.open("rb") as stream:
         content = stream.read(1 << 16)
         if content.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -349,9 +350,9 @@ def _encoding(path: Path) -> str:
 
 
 def check_table(path: Path, key: str, missing: str) -> bool:
-    """Return whether a table is text, not HDF5.
+    """Return whether a table is a text file; otherwise it is HDF5.
 
-    :raises StatejumpError: its name ends with another suffix, or the file does not exist: code ``missing``
+    :raises StatejumpError: the file has another suffix than text or HDF5, or does not exist (code ``missing``)
     """
     known = (*SUFFIXES, ".h5", ".hdf5")
     if path.suffix.lower() not in known:
@@ -363,10 +364,10 @@ def check_table(path: Path, key: str, missing: str) -> bool:
 
 @contextmanager
 def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -> Iterator[Table]:
-    """Open a table.
+    """Open a text table for reading.
 
-    :param largest_bytes: larger files are refused; ``beside`` adds a hint
-    :raises Unreadable: it may not be read, is no text table, or has ambiguous commas
+    :param largest_bytes: largest allowed size; ``beside`` is a hint for the error
+    :raises Unreadable: the file may not be read, is not a text table, or has ambiguous commas
     """
     try:
         encoding = _encoding(path)
@@ -381,10 +382,10 @@ def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:
-    """Return the columns of a table by their names; as numbers if all cells are numbers or NaN.
+    """Return the columns of a table by their names. A column becomes numbers if all its cells are numbers or NaN.
 
-    :raises Unreadable: the file may not be read, has a row with another number of cells than the header, or has no
-        samples
+    :raises Unreadable: the file may not be read, the number of cells of a row differs from that of the header, or the
+        table has no samples
     """
     with open_table(path) as table:
         lines, cells = _all(table)
@@ -401,7 +402,7 @@ def read_columns(path: Path) -> dict[str, np.ndarray]:
 
 
 def _all(table: Table) -> tuple[list[int], list[tuple[str, ...]]]:
-    """Return the line numbers of all rows, and their cells by column."""
+    """Read all rows of a table. Return their line numbers, and the cells by column."""
     lines, rows = [], []
     for line, row in table.rows():
         lines.append(line)
@@ -415,10 +416,10 @@ def read_known(
     path: Path, known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None, texts: Collection[str] = (),
     ignored: Collection[str] = (),
 ) -> dict[str, np.ndarray]:
-    """Return the columns of a table by key. The end of a key is the unit of its values.
+    """Return the columns of a table by key. A key ends with the unit of its values.
 
-    :param known: keys
-    :param words: other names of the quantity, by key
+    :param known: allowed keys
+    :param words: other names of the quantity of a key, by key
     :param texts: keys whose cells are texts
     :param ignored: names of columns to omit
     :raises StatejumpError: one sentence with the file, and line or column
@@ -436,7 +437,7 @@ def read_known(
 
 def numbers_of(table: Table, column: Column, cells: Sequence[str], lines: Sequence[int], empty: bool = False
                ) -> np.ndarray:
-    """Return the numbers of cells of one column, in the unit of its key."""
+    """Convert the cells of one column to numbers in the unit of its key."""
     def place(index: int) -> tuple[int, str]:
         return lines[index], column.name
 

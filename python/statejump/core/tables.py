@@ -29,12 +29,12 @@ def _cell(value: Any) -> Any:
 
 
 def cells(row: Iterable[Any]) -> list[Any]:
-    """Return a row as the cells of a CSV file: full precision, None and NaN as an empty cell."""
+    """Return a row as the cells of a CSV file. Numbers have full precision; None and NaN become empty cells."""
     return [_cell(value) for value in row]
 
 
 def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
-    """Write a table; full precision, None and NaN as an empty cell. Return the path.
+    """Write a table as CSV with full precision; None and NaN become empty cells. Return the path.
 
     :param header: names of the columns, with their units
     """
@@ -46,16 +46,16 @@ def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) 
 
 
 def write_rows(path: Path, rows: Sequence[Mapping[str, Any]], header: Sequence[str] = ()) -> Path:
-    """Write rows that name their cells; see :func:`write_csv`.
+    """Write rows, given as dicts of cells by column name, as CSV; see :func:`write_csv`.
 
-    :param header: names of the columns; by default those of the first row
+    :param header: names of the columns; default: the names in the first row
     """
     names = list(header) or (list(rows[0]) if rows else [])
     return write_csv(path, names, ([row.get(name) for name in names] for row in rows))
 
 
 def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
-    """Write columns of equal length. NaN stays ``nan``, because a model returned it as a value."""
+    """Write columns of equal length as CSV. NaN stays ``nan``, because a model returned it as a value."""
     length = max((len(values) for values in columns.values()), default=0)
     with write_atomically(path) as stream:
         csv.writer(stream).writerow(columns)
@@ -65,7 +65,7 @@ def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
 
 
 def _cells(values: np.ndarray) -> Iterable[str]:
-    """Return the cells of a column. The writer of ``csv`` is slower, because it looks for quotes in numbers too."""
+    """Return the texts of a column's cells. The writer of ``csv`` is slower: it searches even numbers for quotes."""
     if values.dtype.kind in "biuf":
         return map(repr, values.tolist())
     return (_quoted(value) if isinstance(value, str) else repr(value) for value in values.tolist())
@@ -76,7 +76,7 @@ def _quoted(text: str) -> str:
 
 
 def finite(value: Any) -> Any:
-    """Return a value for JSON. NaN and infinity become None, in lists and dicts too."""
+    """Convert a value for JSON: NaN and infinity become None, also inside lists and dicts."""
     if isinstance(value, Mapping):
         return {key: finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -85,7 +85,7 @@ def finite(value: Any) -> Any:
 
 
 def write_json(path: Path, document: Any, indent: int = 2) -> Path:
-    """Write a document as JSON and return the path; numbers that are not finite become null."""
+    """Write a document as JSON and return the path. Numbers that are not finite become null."""
     with write_atomically(path) as stream:
         stream.write(json.dumps(finite(document), indent=indent, ensure_ascii=False) + "\n")
     return path
@@ -94,7 +94,7 @@ def write_json(path: Path, document: Any, indent: int = 2) -> Path:
 def markdown(header: Sequence[str], rows: Iterable[Sequence[Any]], right: Iterable[int] = ()) -> list[str]:
     """Return a table as lines of Markdown.
 
-    :param right: indices of the columns that are aligned to the right
+    :param right: indices of the columns with right alignment
     """
     places = set(right)
     lines = ["| " + " | ".join(header) + " |",
@@ -110,8 +110,7 @@ def html_table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def write_markdown(path: Path, lines: Sequence[str]) -> Path:
-    """Write lines of Markdown and return the path. Markdown passes HTML through, so the beginning of an element is
-    escaped."""
+    """Write lines of Markdown and return the path. Because Markdown passes HTML through, ``<`` of tags is escaped."""
     return write_text(path, [re.sub("<(?=[A-Za-z/!?])", "&lt;", line) for line in lines])
 
 
@@ -124,12 +123,12 @@ def write_text(path: Path, lines: Sequence[str]) -> Path:
 
 @dataclass(frozen=True)
 class Shown:
-    """A table for people.
+    """A table to be shown to people.
 
-    :param title: above the table
+    :param title: title of the table
     :param header: names of the columns with their units
     :param rows: cells as texts
-    :param left: names of the columns that are aligned to the left
+    :param left: names of the columns with left alignment
     """
 
     title: str
@@ -139,9 +138,9 @@ class Shown:
 
 
 def check_columns(columns: Mapping[str, np.ndarray]) -> None:
-    """Raise an error unless all columns contain finite numbers, one for every row.
+    """Raise an error unless all columns consist of finite numbers and have the same length.
 
-    :raises StatejumpError: they differ in length, or have a missing or infinite number
+    :raises StatejumpError: columns differ in length, or a column has a missing or infinite number
     """
     if len({len(values) for values in columns.values()}) > 1:
         raise StatejumpError(code="columns_of_other_length",

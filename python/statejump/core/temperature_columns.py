@@ -29,9 +29,9 @@ ENDS = ("@a", "@b")  # endings of names of columns: first and second node of a l
 
 @dataclass(frozen=True)
 class Read:
-    """The content of a file.
+    """The content of a file of temperatures.
 
-    :param offset_K: offset of each column's numbers to kelvin (m)
+    :param offset_K: offset that converts numbers to kelvin, for each of m columns
     """
 
     path: Path
@@ -47,10 +47,10 @@ class Read:
 
 
 def of_means(read: Read) -> Read:
-    """Return the columns. Two columns for both ends of a link are replaced by their mean, which determines the length
-    of a straight rod.
+    """Replace the two columns for both ends of a link by their mean, which determines the length of a straight rod.
 
-    :raises Unreadable: the other end is missing or has another unit, or the link has its own column too
+    :raises Unreadable: the column of the other end is missing or has another unit, or the link also has a column of its
+        own
     """
     place = {name: index for index, name in enumerate(read.names)}
     pairs: dict[str, tuple[int, int]] = {}  # a single column is used for both
@@ -128,7 +128,7 @@ def _text(path: Path) -> Read:
 
 
 def _time(table: Table) -> tuple[int, Column]:
-    """Return the column of times: the first column, or the only one with such a name."""
+    """Return index and key of the time column: the first column, or else the only column with a name of times."""
     try:
         return 0, matched(table.header[:1], ("time_s",), {"time_s": TIMES})[0]
     except StatejumpError as refused:
@@ -144,7 +144,7 @@ def _time(table: Table) -> tuple[int, Column]:
 
 
 def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
-    """Return the name of a column of temperatures, and the conversion of its numbers to kelvin."""
+    """Return the name in a column heading of temperatures, and the conversion of the column's numbers to kelvin."""
     for ending, offset in ENDINGS.items():
         if cell.endswith(ending) and cell.removesuffix(ending).isprintable() and cell != ending:
             return cell.removesuffix(ending), Conversion(offset=offset)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperatures from files: ``table_file`` of a program, ``members_file`` of a truss.
+"""Temperatures from files: ``table_file`` of a temperature program, ``members_file`` of a truss.
 
 Loading a case reads these files and replaces their names by their contents: a program becomes a table, the histories of
 members become an object of arrays. Result files and samples of a campaign therefore need none of the files.
@@ -29,10 +29,10 @@ from statejump.schema.fields import Attached, Section, fields_of, rule_of
 class Histories(Attached):
     """Temperature changes of members over time, linear between the times; immutable.
 
-    :param names: of the members (m)
-    :param time_s: from 0, rising (n)
-    :param temperature_change_K: from the reference temperature (n, m); the first row is 0
-    :param source: name in sentences; "": unknown
+    :param names: names of the m members
+    :param time_s: n times [s], rising from 0
+    :param temperature_change_K: changes from the reference temperature (n, m) [K]; the first row is 0
+    :param source: name of the file in messages; "": unknown
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Histories(Attached):
 
     @cached_property
     def sha256(self) -> str:
-        """SHA-256 of names and numbers, which decides the equality of two histories."""
+        """SHA-256 of names and numbers. Two histories with the same hash are equal."""
         digest = hashlib.sha256("\n".join(self.names).encode())
         for values in (self.time_s, self.temperature_change_K):
             digest.update(np.ascontiguousarray(values).data)
@@ -64,7 +64,7 @@ class Histories(Attached):
         return {"members": len(self.names), "times": len(self.time_s), "sha256": self.sha256}
 
     def programs(self, cycles: int, period_s: float) -> list[MemberProgram]:
-        """Return the program of every member, in the order of the names, with the return until ``period_s``."""
+        """Return the temperature program of every member, in the order of names, with the return until ``period_s``."""
         times, changes = self.time_s, self.temperature_change_K
         if period_s - times[-1] > SAME_TIME * times[-1]:
             times, changes = np.append(times, period_s), np.vstack((changes, np.zeros(changes.shape[1])))
@@ -72,7 +72,7 @@ class Histories(Attached):
         return [MemberProgram(times, column, cycles) for column in columns]
 
     def furthest_at_end(self, cycles: int) -> MemberProgram:
-        """Return the program of the member that ends furthest from the reference temperature."""
+        """Return the program of the member whose last temperature is furthest from the reference temperature."""
         furthest = int(np.argmax(np.abs(self.temperature_change_K[-1])))
         return MemberProgram(self.time_s, self.temperature_change_K[:, furthest], cycles)
 
@@ -84,10 +84,10 @@ class Histories(Attached):
 
 def with_files(data: Mapping[str, Any], folder: Path, section: type[Section] | None) -> Mapping[str, Any]:
     """Return a parsed case file in which the contents of temperature files replace their names. Without such files,
-    return the document itself. The checks of the case find faults of the keys themselves.
+    return the document itself. The checks of the case find other faults.
 
-    :param folder: base of relative paths
-    :param section: class of [thermal] in this kind of case; None: the kind has no such section
+    :param folder: folder to which relative paths refer
+    :param section: class of the section [thermal] of this kind of case; None: the kind has no such section
     :raises StatejumpError: a file cannot be read or is invalid: one sentence with its name
     """
     thermal, programs = data.get("thermal"), data.get("program")
@@ -125,7 +125,7 @@ def _rule(key: str, value: Any, section: str) -> None:
 
 
 def _checked(given: Mapping[str, Any], section: str, key: str) -> None:
-    """Raise NotAllowed for a key that contradicts the name of a file."""
+    """Raise NotAllowed for a key that contradicts the use of a temperature file."""
     for name in ("reference_temperature_K", "lead_in_s", "lead_out_s", "table_column"):
         if given.get(name) is not None:
             _rule(name, given[name], section)
@@ -168,7 +168,7 @@ def _table(given: Mapping[str, Any], folder: Path, section: str, name: Any) -> d
 
 
 def _members(given: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the common program with the histories of members; its table has their mean."""
+    """Return the section [thermal] with the histories of members from a file. Its table has the mean of all members."""
     _checked(given, "thermal.", "members_file")
     if given.get("table_column") is not None:
         raise NotAllowed("thermal.table_column", code="conflicting_key", other="thermal.members_file")
@@ -179,10 +179,10 @@ def _members(given: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Numbers, Numbers]:
-    """Return times and temperature changes of a file, both from 0. Its own times, counted from the first, lie between
-    lead-in and lead-out.
+    """Return times and temperature changes from a file, both starting at 0. The times of the file lie between the
+    lead-in and the lead-out.
 
-    :raises StatejumpError: the first row is not at the reference temperature, and there is no lead-in
+    :raises StatejumpError: the first row is not at the reference temperature, and the case has no lead-in
     """
     reference, lead_in, lead_out = (given.get(key) for key in ("reference_temperature_K", "lead_in_s", "lead_out_s"))
     time_s = read.time_s - read.time_s[0]

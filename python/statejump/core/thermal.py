@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperature programs: the section of a case file, its range, and the engine's program.
+"""Temperature programs: their section in a case file, their temperature range, and their form for the engine.
 
 A program with a shape repeats every ``period_s``. The cycle of a table ends at its last time. A table that does not end
 at its first temperature gets a return: one more row, ΔT = 0 at ``period_s``.
@@ -100,12 +100,12 @@ class MemberProgram:
 
 @dataclass(frozen=True)
 class Ending:
-    """End of the rows of a table that does not end at the reference temperature.
+    """The last row of a table that does not end at the reference temperature.
 
-    :param time_s: of the last row, in the last cycle
-    :param temperature_change_K: ΔT [K] at that time, of the program furthest from the reference temperature
+    :param time_s: time of this row [s], in the last cycle
+    :param temperature_change_K: ΔT [K] at this row, of the program furthest from the reference temperature
     :param return_s: duration of the added return [s]; 0: none is added
-    :param remedy: the setting that adds one
+    :param remedy: the setting that adds a return
     """
 
     time_s: float
@@ -135,12 +135,11 @@ class Ending:
 def ending(
     programs: Sequence[Thermal | MemberProgram], returns: bool, period_s: float | None,
 ) -> Ending | None:
-    """Return the ending of the programs of a case, if it is not at the reference temperature.
+    """Return the last row of the programs of a case, if it is not at the reference temperature.
 
-    The added return ends at ``period_s``. Without this key, its rate is the mean rate of the table that is furthest
-    away.
+    The added return ends at ``period_s``. Without this key, the furthest program returns at the mean rate of its table.
 
-    :param programs: the common one first, as given, without a return
+    :param programs: programs as given, without a return, the common program first
     :param returns: whether the case requests a return
     :param period_s: duration of a cycle; None: not given
     :raises NotAllowed: ``period_s`` is before the last row
@@ -185,7 +184,7 @@ def _changes(program: Thermal | MemberProgram) -> Numbers:
 
 
 def rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, Numbers]:
-    """Return times [s] and temperature changes [K] of a table, with the added return until ``period_s``."""
+    """Return times [s] and temperature changes [K] of a table, including the added return until ``period_s``."""
     times, changes = _times(program), _changes(program)
     if period_s - times[-1] <= SAME_TIME * times[-1]:
         return times, changes
@@ -193,9 +192,9 @@ def rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, Nu
 
 
 def check(thermal: Thermal, section: str = "thermal.", returns: bool = False) -> None:
-    """Raise StatejumpError for an invalid program.
+    """Raise StatejumpError if a temperature program is invalid.
 
-    :param section: prefix of its keys, "" in a table of its own
+    :param section: prefix of the keys; "" for keys in a table of their own
     :param returns: whether a return is added to a table that does not end at the reference temperature
     """
     for key in KEYS_OF_FILES:
@@ -235,7 +234,7 @@ def _short(values: list[float]) -> Any:
 def period_of(
     thermal: Thermal, given_s: float | None, key: str, default_s: float = PERIOD_s, return_s: float = 0.0
 ) -> float:
-    """Return the duration of a cycle [s]: for a table its last time plus the return, else the given one.
+    """Return the duration of a cycle [s]: for a table its last time plus the return, else the given duration.
 
     :param given_s: duration in the case; None: not given
     :param key: the key of the duration
@@ -268,7 +267,7 @@ def range_K(thermal: Thermal | MemberProgram) -> tuple[float, float]:
 
 
 def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, Any]:
-    """Return a program as plain values, for the engine's program and the YADE script.
+    """Return a temperature program as plain values, for the engine and for the YADE script.
 
     :param period_s: duration of a cycle [s], see :func:`period_of`
     """
@@ -284,9 +283,9 @@ def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, A
 
 
 def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> Numbers:
-    """Return the times [s] at which all items have their first temperature again: ends of cycles, rows of a table.
+    """Return the times [s] at which all items have their initial temperatures: ends of cycles, rows of a table.
 
-    :param programs: of one case, the common one first; all have one duration
+    :param programs: all programs of a case, the common program first; all have the same duration
     """
     common, own = programs[0], [period_s]
     if common.shape == "table" and common.table_time_s is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units in any spelling, with pint. Loaded if a table has a unit other than that of its key."""
+"""Units in any spelling, by the library pint. Loaded only if the unit of a table differs from that of its key."""
 from __future__ import annotations
 
 import re
@@ -63,7 +63,7 @@ def is_unit(text: str) -> bool:
 
 @lru_cache(maxsize=None)
 def spelled(unit: str) -> str | None:
-    """Return a unit in pint's spelling; None: it is no accepted unit."""
+    """Return a unit in pint's spelling; None if the text is not an accepted unit."""
     plain = re.sub(r"[\s_.]+", "", unit.translate(_SIGNS)).lower()
     if plain in _WORDS:
         return _WORDS[plain]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units: the unit at the end of a name, and numbers with a prefix: 23.8095 µm, not 2.38095e-05 m."""
+"""Units: the unit at the end of a name, and numbers with SI prefixes (23.8095 µm, not 2.38095e-05 m)."""
 from __future__ import annotations
 
 import math
@@ -21,7 +21,7 @@ ENDINGS = {
 
 @lru_cache(maxsize=None)
 def split_unit(name: str) -> tuple[str, str]:
-    """Return a name without its unit, and the unit; ``-`` for none."""
+    """Return a name without its unit, and the unit (``-`` for none)."""
     ending = next((ending for ending in ENDINGS if name.endswith(ending)), "")
     return name.removesuffix(ending), ENDINGS.get(ending, "-")
 
@@ -43,7 +43,7 @@ WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "kg m2": "kg·m²", "m/s2": "m/s²", 
 
 
 def scale_of(unit: str, size: float) -> tuple[float, str]:
-    """Return the factor that brings values of a size into a readable range, and the resulting unit."""
+    """Return a readable unit for values of the given size, and the factor that converts values to this unit."""
     written = WRITTEN.get(unit, unit)
     if unit == "m2" and 0 < abs(size) < 1e-2:
         return 1e6, "mm²"
@@ -71,14 +71,14 @@ def text(value: float | None, unit: str = "-", digits: int = 6) -> str:
 
 
 def plain(value: float | None, unit: str = "-", digits: int = 6) -> str:
-    """Return the number for terminals and text files with common blank and minus sign, so that a search finds it."""
+    """Return the number as text with common blank and minus sign, so that a text search finds it."""
     return text(value, unit, digits).replace("\u202f", " ").replace("−", "-")
 
 
 @dataclass(frozen=True)
 class Conversion:
-    """Conversion of numbers to another unit: x · factor/divisor + offset. The divisor converts 12.5 mm to exactly the
-    number 0.0125."""
+    """Conversion of numbers to another unit: x · factor/divisor + offset. The divisor makes 12.5 mm exactly 0.0125
+    m."""
 
     factor: float = 1.0
     divisor: float = 1.0

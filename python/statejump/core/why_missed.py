@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Possible reasons why two models missed a tolerance, as sentences that name the keys to set."""
+"""Possible reasons why the difference of two models exceeds a tolerance: sentences that name the keys to set."""
 from __future__ import annotations
 
 from math import ceil, floor, inf, isinf, log10, pi, sqrt
@@ -17,8 +17,8 @@ SHARE_TOLD = 0.1
 
 
 def kink(program: _engine.ThermalProgram) -> float:
-    """Return the largest jump of dΔT/dt, divided by the range of ΔT and multiplied by the duration of a cycle [-]: 4
-    for a triangle, π for half a sine. This is the change of speed of a following part, in ranges per cycle."""
+    """Return the largest jump of dΔT/dt in a cycle, times the duration of the cycle, over the range of ΔT [-]: 4 for a
+    triangle, π for half a sine. A part that follows ΔT changes its speed by this number of ranges per cycle."""
     times = np.linspace(-1.5 / LOOKED_AT, 1, LOOKED_AT) * program.period_s
     rates = program.temperature_rate(times) * (times >= 0)
     size = float(np.ptp(program.temperature_change(times)))
@@ -28,13 +28,13 @@ def kink(program: _engine.ThermalProgram) -> float:
 def heated_too_fast(
     natural_period_s: float, thermal: Thermal, program: _engine.ThermalProgram, moved_m: float, allowed_m: float
 ) -> list[str]:
-    """Return the sentence about oscillations after corners of the temperature, if they matter.
+    """Return the sentence that corners of the temperature excite oscillations, if these may matter.
 
-    A part that follows the temperature quasi-statically would change its speed at once. Instead, an oscillator of
-    period T swings by speed · T/2π.
+    A part that follows the temperature quasi-statically would change its speed at once. An oscillator of period T
+    instead swings by (change of speed) · T/2π.
 
-    :param moved_m: motion of parts over the range of the temperature [m]
-    :param allowed_m: allowed difference [m]
+    :param moved_m: motion of the parts over the temperature range [m]
+    :param allowed_m: largest allowed difference of the models [m]
     """
     if isinf(natural_period_s):
         return ["a motion that only friction holds has no natural period; the reduced model has no inertia: "
@@ -55,7 +55,7 @@ def heated_too_fast(
 
 
 def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: float) -> list[str]:
-    """Return the sentence about the kinetic energy at the end of a DEM run, if it matters."""
+    """Return the sentence that a DEM run still has kinetic energy at its end, if this energy may matter."""
     kinetic = float(dem["kinetic_energy_J"][-1])
     swing = inf if isinf(natural_period_s) else sqrt(2 * max(kinetic, 0.0) / mass_kg) * natural_period_s / (2 * pi)
     if not kinetic > 0 or not swing > SHARE_TOLD * allowed_m:

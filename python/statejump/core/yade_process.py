@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a case in a YADE process: progress, results, failures.
+"""Runs a case in a YADE process, and reports progress, results and failures.
 
 The script in YADE writes :mod:`~statejump.core.samples`. It reports in lines of JSON that begin with ``MARK``: the
 finished fraction, or the fields of a :class:`~statejump.core.errors.StatejumpError`.
@@ -45,7 +45,7 @@ class Samples:
 
 
 def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
-    """Return the data that the YADE script needs for any kind of case, as plain values; keys as in the case file."""
+    """Return the data that the YADE script needs for any kind of case, as plain values with keys of case files."""
     values = case.with_defaults()
     values["period_s"] = case.period_s
     values["thermal"].update(parameters(case.thermal, case.period_s))
@@ -56,7 +56,7 @@ def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
 
 def stepper() -> Any:
     """Declare the key that selects the stepper of a DEM run: the plugin's JointStepper, or all engines of YADE's loop.
-    Both give the same numbers, bit for bit on one thread."""
+    On one thread, both give the same numbers, bit for bit."""
     return choice("joint", ("joint", "yade"), "the same numbers as YADE's loop, in less time")
 
 
@@ -76,19 +76,19 @@ def find_yade() -> str:
 def command_of(values: Mapping[str, Any], script: Path, *, view: bool = False) -> list[str]:
     """Return the command that runs a script in YADE.
 
-    :param view: with YADE's windows and its prompt
+    :param view: whether to open YADE's windows and its prompt
     """
     return [find_yade(), *([] if view else ["-n", "-x"]), f"-j{values['dem']['threads']}", str(script)]
 
 
 def python_path() -> str:
-    """Return the PYTHONPATH with which the script in YADE finds this package and the plugin."""
+    """Return the PYTHONPATH that lets the script in YADE find this package and the plugin."""
     modules = str(Path(__file__).resolve().parents[2])
     return os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")]))
 
 
 def _dying_with_us() -> Callable[[], None]:
-    """Return a function that a new process calls at its start. The kernel then kills the process together with the
+    """Return a function that a new process calls at its start. The kernel then kills this process together with the
     thread that waits for it. Otherwise YADE would continue after its caller was killed."""
     import ctypes  # as which
 
@@ -104,11 +104,11 @@ def _dying_with_us() -> Callable[[], None]:
 def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, on_progress: OnProgress) -> Run:
     """Run a case in YADE.
 
-    :param values: data of the script, see :func:`common_values`
+    :param values: data for the script, see :func:`common_values`
     :param make_run: makes the run from its samples
-    :param on_progress: receives the finished fraction, 0 to 1
+    :param on_progress: called with the finished fraction, 0 to 1
     :raises FailedRun: YADE is missing, failed or was killed
-    :raises Interrupted: Ctrl-C; its ``run`` has the samples so far, None if there are none
+    :raises Interrupted: Ctrl-C was pressed; ``run`` of the error has the samples so far, or is None
     """
     try:
         done = execute(values, on_progress)
@@ -124,7 +124,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, on_progress: O
 
 
 def execute(values: Mapping[str, Any], on_progress: OnProgress) -> Samples:
-    """Run a resolved case in YADE; see :func:`run`. The ``run`` of an interruption is :class:`Samples`."""
+    """Run a case in YADE, given as plain values; see :func:`run`. ``run`` of an interruption is a :class:`Samples`."""
     from statejump.core.scratch import scratch  # as which
 
     name = values["case"]["name"]
@@ -196,7 +196,7 @@ def _watch(command: list[str], environment: dict[str, str], on_progress: OnProgr
 
 
 def _message(line: str) -> dict[str, Any]:
-    """Return the message in a line; empty if the line is YADE's own or incomplete."""
+    """Return the message in a line of YADE's output; an empty dict if the line is YADE's own or incomplete."""
     if not line.startswith(MARK):
         return {}
     try:
@@ -214,7 +214,7 @@ class RunFailed(FailedRun):
     :param place: name of the joint in the sentence, for example ``slider S1``
     :param reason: code of the failure in the plugin or the scene
     :param part: name of the part that failed, as in the case
-    :param quantity: what is wrong with it
+    :param quantity: the quantity of this part that caused the failure
     """
 
     def __init__(
@@ -243,7 +243,7 @@ def _interrupted(output: Path) -> Interrupted:
 
 
 def check_folder(folder: Path) -> None:
-    """Raise NotAllowed for a folder with files that are not the input of a DEM run."""
+    """Raise NotAllowed if a folder contains files other than the input of a DEM run."""
     if folder.is_dir() and any(folder.iterdir()) and not (folder / RUNNER).is_file():
         raise NotAllowed("--keep-input", str(folder), code="folder_not_empty")
 
@@ -251,7 +251,7 @@ def check_folder(folder: Path) -> None:
 def keep_input(values: Mapping[str, Any], folder: Path) -> str:
     """Write script and data of a DEM run into a folder; return the shell command that repeats the run.
 
-    :param values: the resolved case, as :func:`statejump.core.yade_process.run` takes it
+    :param values: the case as plain values, see :func:`statejump.core.yade_process.run`
     :raises NotAllowed: the folder has other files
     :raises NotWritten: the folder cannot be written
     """
@@ -281,7 +281,7 @@ def _no_display(cause: str, display: str | None = None) -> FailedRun:
 
 
 def view(values: Mapping[str, Any], folder: Path) -> None:
-    """Open YADE with its 3-D view and its prompt on a kept input; return when the user ends YADE.
+    """Open YADE on a kept input, with its 3-D view and its prompt. Return when the user ends YADE.
 
     :raises FailedRun: there is no display, or YADE ended with an error
     """

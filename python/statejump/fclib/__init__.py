@@ -10,7 +10,7 @@
     solution.merit.largest, solution.reactions
     sj.fclib.write("mine.hdf5", problem, solution)
 
-u = W r + q with Coulomb's law at every contact; see docs/theory/complementarity.md.
+Such a problem is u = W r + q with Coulomb's law at every contact; see docs/theory/complementarity.md.
 """
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of FCLIB: the group ``fclib_local`` with its problem, ``solution`` and ``guesses`` with reactions.
+"""Files of FCLIB: the group ``fclib_local`` with its problem; ``solution`` and ``guesses`` with reactions.
 
-The layout is that of fclib.h. A matrix is a group of ``m``, ``n``, ``nz``, ``nzmax``, ``p``, ``i``, ``x``. ``nz`` = -1
-means compressed columns, -2 compressed rows; another value is the number of triplets. In triplets ``i`` is the row and
-``p`` the column, as in CSparse and in the code of FCLIB; the header of FCLIB states the opposite.
+The header fclib.h defines the layout. A matrix is a group of ``m``, ``n``, ``nz``, ``nzmax``, ``p``, ``i``, ``x``.
+``nz`` is -1 for compressed columns and -2 for compressed rows; otherwise it is the number of triplets. In triplets
+``i`` is the row and ``p`` the column, as in CSparse and in the code of FCLIB; the header of FCLIB states the opposite.
 """
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ COLUMNS, ROWS = -1, -2
 
 
 def read(path: str | Path) -> Problem:
-    """Return the problem of a file, with its stored solutions and guesses.
+    """Return the problem in a file of FCLIB, with its stored solutions and guesses.
 
-    Equations of the file (V, R, s) are eliminated if R is regular.
+    The equations V^T r + R l + s = 0 in the file are eliminated if R is regular.
 
     :raises Unreadable: the file does not exist, is not HDF5, or contains no local problem; or a part is missing or
         damaged
@@ -69,7 +69,7 @@ def _problem(file: h5py.File) -> Problem:
 def _without_equations(
     group: h5py.Group, delassus: scipy.sparse.spmatrix, q: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return W and q after elimination of l from u = W r + V l + q, V^T r + R l + s = 0."""
+    """Return W and q of the problem after elimination of l from u = W r + V l + q and V^T r + R l + s = 0."""
     s = _vector(_group(group, "vectors"), "s")
     coupling = _matrix(group, "V", (q.size, s.size)).toarray()
     matrix = _matrix(group, "R", (s.size, s.size)).toarray()

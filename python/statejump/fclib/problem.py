@@ -25,7 +25,7 @@ METHODS: tuple[str, ...] = _engine.FRICTION_METHODS
 class NotSolved(StatejumpError):
     """No method reached the tolerance, although a solution may exist.
 
-    :param solution: the best result
+    :param solution: the best result that was found
     """
 
     exit_status = 1
@@ -39,10 +39,10 @@ class NotSolved(StatejumpError):
 
 @dataclass(frozen=True)
 class Merit:
-    """Error of reactions as a solution; 0 for an exact one.
+    """Errors of reactions as a solution of a problem. Both are 0 for an exact solution.
 
-    :param natural_map: norm of r - P_K(r - û) over the largest of |q|, |r| and |u|, in the problem's units
-    :param scaled: the same norm over |q|, with W divided by its mean diagonal and r multiplied by that value
+    :param natural_map: norm of r - P_K(r - û), divided by the largest of |q|, |r| and |u|, in the problem's units
+    :param scaled: norm of r - P_K(r - û) over |q|, with W divided by its mean diagonal and r multiplied by it
     """
 
     natural_map: float
@@ -58,7 +58,7 @@ class Merit:
 class Stored:
     """Reactions stored in a file.
 
-    :param name: their path in the file: ``solution``, ``guesses/1``
+    :param name: path of the reactions in the file, for example ``solution`` or ``guesses/1``
     :param reactions: one number for each row of W
     """
 
@@ -68,23 +68,22 @@ class Stored:
 
 @runtime_checkable
 class _Sparse(Protocol):
-    """A sparse matrix, detected without SciPy, which a dense problem does not load."""
+    """A sparse matrix, recognised without importing SciPy, which a dense problem does not load."""
 
     def tocsc(self) -> Any: ...
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Velocities u = W r + q with Coulomb's law at every contact; the normal component comes first in the block of a
-    contact.
+    """A frictional contact problem u = W r + q with Coulomb's law. Each contact is a block, its normal component first.
 
-    Units are the caller's: r may be forces or impulses, u velocities, displacements or gap rates.
+    The caller chooses the units: r may be forces or impulses; u may be velocities, displacements or gap rates.
 
-    :param delassus: W, a square array or a sparse matrix of scipy, (contacts x dimension) rows
-    :param q: velocities without reactions
+    :param delassus: W, a square array or a sparse matrix of scipy, with (contacts x dimension) rows
+    :param q: velocities u for zero reactions
     :param mu: friction coefficient of each contact [-]
     :param dimension: number of components per contact, 2 or 3
-    :param stored: solutions and guesses in the file of the problem
+    :param stored: solutions and guesses that the file of the problem contains
     :raises StatejumpError: sizes do not match, a number is not finite, or mu < 0
     """
 
@@ -134,8 +133,8 @@ class Problem:
 class Solution:
     """Result of :func:`solve`.
 
-    :param reactions: r, the best result
-    :param velocities: u = W r + q
+    :param reactions: the best reactions r that were found
+    :param velocities: the velocities u = W r + q
     :param solved: whether the merit is within the tolerance
     :param method: the method that found the reactions
     :param iterations: number of Gauss-Seidel sweeps, linear systems (Newton, interior point) or Lemke pivots
@@ -160,9 +159,9 @@ class Solution:
 
 
 def merit(problem: Problem, reactions: ArrayLike) -> Merit:
-    """Return the merit of reactions.
+    """Return the merit of given reactions as a solution of the problem.
 
-    :raises StatejumpError: their number differs from the number of rows of W
+    :raises StatejumpError: W has another number of rows
     """
     with engine():
         return Merit(**problem._problem.merit(reactions))
@@ -176,11 +175,11 @@ def solve(
 
     :param tolerance: largest allowed value of both merits
     :param method: one of METHODS; ``automatic`` tries them in turn
-    :param most_sweeps: largest number of sweeps of Gauss-Seidel
+    :param most_sweeps: largest number of Gauss-Seidel sweeps
     :param guess: initial reactions
-    :param strict: raise an error without solution, instead of returning a result with ``solved`` false
+    :param strict: whether to raise an error without solution, instead of returning ``solved`` = false
     :param progress: called at intervals with the best merit so far
-    :raises NotSolved: with ``strict``: no method reached the tolerance
+    :raises NotSolved: no method reached the tolerance, and ``strict`` is true
     :raises StatejumpError: an argument is out of its range
     """
     start = time.perf_counter()

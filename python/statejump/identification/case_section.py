@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The section of a case file for an identified joint: keys, values, distributions."""
+"""The section of a case file that describes an identified joint: its keys, their values and distributions."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -25,12 +25,12 @@ OF_EITHER_SIGN = ("bias_rad", "preload_force_N")
 
 @dataclass(frozen=True)
 class Entry:
-    """A key of a case.
+    """A key of the section of an identified joint.
 
     :param key: name of the key in its section
     :param value: value of the key; None: the loop does not determine it
     :param deviation: standard deviation of the estimate; None: the loop does not bound it
-    :param why: reason for a missing value
+    :param why: reason why the value is missing
     """
 
     key: str
@@ -40,7 +40,7 @@ class Entry:
 
 
 def check(target: str, angular: bool) -> None:
-    """Raise NotAllowed if this kind of loop cannot determine such an item."""
+    """Raise NotAllowed if a loop of this type cannot determine the parameters of such an item."""
     if target not in TARGETS:
         raise NotAllowed("target", target, code="not_one_of", allowed=tuple(TARGETS), known=", ".join(TARGETS))
     if TARGETS[target][2] not in (None, angular):
@@ -48,8 +48,7 @@ def check(target: str, angular: bool) -> None:
 
 
 def deviation(interval: Interval, confidence: float) -> float | None:
-    """Return the standard deviation of a normal distribution with this confidence interval; None: the interval is
-    unbounded."""
+    """Return the standard deviation of a normal distribution with a confidence interval; None if that is unbounded."""
     if not interval.bounded:
         return None
     return (interval.high - interval.low) / (2 * float(ndtri(0.5 + confidence / 2)))
@@ -59,7 +58,7 @@ def entries(
     target: str, values: Mapping[str, float], intervals: Mapping[str, Interval], confidence: float,
     normal_force_N: float | None, journal_radius_m: float | None, angular: bool,
 ) -> list[Entry]:
-    """Return the keys of a section.
+    """Return the keys of the section, with values and deviations.
 
     :param values: parameters of the joint, by name
     """
@@ -121,7 +120,7 @@ def entries(
 
 
 def section(target: str, found: list[Entry], source: str) -> list[str]:
-    """Return the lines of the section of a case file. Parameters that the loop does not determine are comments."""
+    """Return the lines of the section. Parameters that the loop does not determine become comments."""
     lines = [f"# identified from {source}", TARGETS[target][0]]
     for entry in found:
         if entry.value is None:
@@ -133,7 +132,7 @@ def section(target: str, found: list[Entry], source: str) -> list[str]:
 
 
 def distributions(target: str, found: list[Entry]) -> dict[str, dict[str, float | str]]:
-    """Return the varied keys of a campaign with the fields of a ``[[vary]]`` table. Positive parameters are
+    """Return the varied keys of a campaign with the fields of a ``[[vary]]`` table; positive parameters are
     lognormal."""
     return {
         f"{TARGETS[target][1]}.{entry.key}": {

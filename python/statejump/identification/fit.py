@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Least-squares fit of a joint to a loop, intervals by profile likelihood, model choice by BIC.
+"""Least-squares fit of a joint to a loop, intervals by profile likelihood, choice of the joint by BIC.
 
-The force has Gaussian noise of one unknown standard deviation σ, which may be correlated from row to row: n rows count
-as m = n/τ independent ones. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval of a
-parameter ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p) for p parameters,
-and κ the factor by which correlation increases the variance.
+The force has Gaussian noise with one unknown standard deviation σ. It may be correlated: n rows then count as m = n/τ
+independent rows. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval of a parameter
+ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p) for p parameters, and κ the
+factor by which correlation increases the variance of an estimate.
 """
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ROUNDING = 1e-9  # fraction of half the force range of the loop below which nois
 
 @dataclass(frozen=True)
 class Interval:
-    """Confidence interval of a parameter; an end that the loop does not determine is infinite."""
+    """Confidence interval of a parameter. An end that the loop does not determine is infinite."""
 
     low: float
     high: float
@@ -50,11 +50,11 @@ ENDLESS = dict.fromkeys(("friction", "stop_stiffness", *STOPS), inf)
 
 
 class Problem:
-    """A joint and a loop.
+    """Search for the best fit of a joint to a loop.
 
-    Points of the search are in units of the size of the loop; positive parameters are logarithms. At an end of its
-    search range, a parameter of a slide has no effect: it is 0 or infinite. The search for a joint therefore contains
-    its parts.
+    Coordinates of a point are parameters in units of the loop's size; those of positive parameters are logarithms. At
+    an end of its search range, a parameter of a slide has no effect: it is 0 or infinite. The search for a joint
+    therefore includes the simpler joints that it contains.
     """
 
     def __init__(self, model: Model, loop: Loop) -> None:
@@ -90,7 +90,7 @@ class Problem:
         return found
 
     def values(self, point: np.ndarray) -> dict[str, float]:
-        """Return the parameters of a point of the search, in SI units."""
+        """Return the parameters at a point of the search, in SI units."""
         relative = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, point, 0.0)), point)
         found = (relative * self.units + self.offsets).tolist()
         for place, end, limit in self.limits:
@@ -105,7 +105,7 @@ class Problem:
         return np.asarray(np.clip(found, self.low, self.high))
 
     def value(self, place: int, coordinate: float) -> float:
-        """Return a parameter for its coordinate in the search; infinite at an end of the search range."""
+        """Return the parameter for a coordinate of the search; infinite at an end of the search range."""
         if coordinate <= self.low[place]:
             return -inf
         if coordinate >= self.high[place]:
@@ -114,20 +114,20 @@ class Problem:
         return float(relative * self.units[place] + self.offsets[place])
 
     def residual(self, point: np.ndarray) -> np.ndarray:
-        """Return measured minus computed force, in units of half the force range of the loop."""
+        """Return measured minus computed force in every row, in units of half the force range of the loop."""
         answered = self.model.answer(self.values(point), self.displacement, self.memory)
         found: np.ndarray = (self.force - answered) / self.half_force
         return found
 
     def squares(self, point: np.ndarray) -> float:
-        """Return the sum of squared residuals, but at least that of rounding."""
+        """Return the sum of squared residuals. It is not smaller than the sum that rounding causes."""
         rest = self.residual(point)
         return max(float(rest @ rest), len(rest) * ROUNDING**2)
 
     def best(self, start: np.ndarray, held: int | None = None) -> tuple[np.ndarray, float]:
-        """Return the point with the smallest sum of squares near a start, and that sum.
+        """Return the point near a start with the smallest sum of squares, and that sum.
 
-        :param held: index of a fixed coordinate
+        :param held: index of a coordinate that is not varied
         """
         free = [place for place in range(len(start)) if place != held]
         point = np.array(start)
@@ -154,8 +154,8 @@ class Problem:
         return self._lowest(grid, STARTS)
 
     def starts_of(self, part: Fit) -> list[np.ndarray]:
-        """Return starts of the search: the optimum of a part, combined with the best starts of the parameters it
-        lacks."""
+        """Return start points of the search: the best fit of a simpler joint, with start values of the parameters that
+        it lacks."""
         values = {**dict.fromkeys((START,), 0.0), **part.values}
         there = self.point(with_part(self.model, part.model, values, self.memory, self.displacement))
         more = [name for name in self.names if name not in part.values]
@@ -189,7 +189,7 @@ class Fit:
     """The best fit of a joint to a loop.
 
     :param model: the joint
-    :param values: its parameters by name, SI units
+    :param values: parameters of the joint by name, in SI units
     :param noise: standard deviation σ of the force
     :param rows: number of fitted rows
     :param rows_each: number of rows that count as one independent row
@@ -226,14 +226,14 @@ def _fit(problem: Problem, point: np.ndarray, squares: float) -> Fit:
 
 
 class Fits:
-    """The fits of all joints to a loop. The fit of a joint is at least as good as those of the joints it contains."""
+    """The fits of all joints to a loop. A joint fits at least as well as each joint that it contains."""
 
     def __init__(self, loop: Loop) -> None:
         self.loop = loop
         self._found: dict[str, Fit] = {}
 
     def fit(self, name: str) -> Fit:
-        """Return the fit of a joint with the smallest sum of squares, with the fits of its parts as further starts."""
+        """Return the fit of a joint with the smallest sum of squares; fits of simpler joints are start points."""
         if name not in self._found:
             model = MODELS[name]
             problem = Problem(model, self.loop)
@@ -244,7 +244,7 @@ class Fits:
         return self._found[name]
 
     def improve(self, better: Fit) -> None:
-        """Replace the fit of a joint by a better one, and update the joints that contain it."""
+        """Replace the fit of a joint by a better fit, and update the fits of the joints that contain this joint."""
         self._found[better.model.name] = better
         for name in containing(better.model.name):
             before = self._found.get(name)
@@ -255,15 +255,15 @@ class Fits:
                     self._found[name] = _fit(problem, point, squares)
 
     def ranked(self, names: Sequence[str]) -> list[Fit]:
-        """Return the fits of joints, the best by BIC first. The residuals of the best fit determine the number of
-        independent rows for all."""
+        """Return the fits of joints, the best by BIC first. Residuals of the best fit determine the number of
+        independent rows for all fits."""
         found = [self.fit(name) for name in names]
         rows_each = noise_at(min(found, key=lambda each: each.squares), self.loop).rows_each
         return sorted((replace(each, rows_each=rows_each) for each in found), key=lambda each: each.bic)
 
 
 def noise_at(best: Fit, loop: Loop) -> Noise:
-    """Return the correlation of a loop's noise, from the residuals of a fit."""
+    """Return the correlation of the noise of a loop, from the residuals of a fit."""
     problem = Problem(best.model, loop)
     return noise_of(problem.residual(best.point), problem.jacobian(best.point), problem.displacement)
 
@@ -284,7 +284,7 @@ class Profile:
         self.known = {float(best.point[self.place]): (best.point, 0.0)}
 
     def rise(self, coordinate: float) -> float:
-        """Return the relative increase of the sum of squares above that of the fit."""
+        """Return the relative increase of the smallest sum of squares when the parameter is held at a coordinate."""
         near = min(self.known, key=lambda each: abs(each - coordinate))
         if near == coordinate:
             return self.known[near][1]
@@ -298,8 +298,8 @@ class Profile:
         return risen
 
     def end(self, direction: int, step: float, most: float) -> float:
-        """Return the value at which the sum of squares has increased by the fraction ``most``, or the bound of the
-        search."""
+        """Return the coordinate at which the sum of squares has grown by the fraction ``most``, or the end of the
+        range."""
         bound = float((self.problem.high if direction > 0 else self.problem.low)[self.place])
         nearest = NEAREST * float(self.problem.high[self.place] - self.problem.low[self.place])
         centre = float(self.best.point[self.place])
@@ -325,8 +325,8 @@ class Profile:
 
     @cached_property
     def movements(self) -> dict[int, np.ndarray]:
-        """Return, for each end of the search range that the profile reaches, the change of all parameters over the last
-        part of the path to that end."""
+        """Return the change of all parameters over the last part of the profile, for each end of the range that it
+        reaches."""
         found = {}
         for direction, ends in ((-1, self.problem.low), (1, self.problem.high)):
             bound, widest = ends[self.place], AT_END * (self.problem.high - self.problem.low)[self.place]
@@ -340,10 +340,10 @@ class Profile:
 
 @dataclass(frozen=True)
 class Intervals:
-    """Intervals of a fit.
+    """Confidence intervals of the parameters of a fit.
 
-    :param of: interval by parameter
-    :param because: name of the unbounded parameter that leaves a parameter unbounded, by the name of the latter
+    :param of: interval of each parameter, by name
+    :param because: for a parameter without bound: name of the other unbounded parameter that causes this
     """
 
     of: dict[str, Interval]
@@ -353,8 +353,8 @@ class Intervals:
 def intervals(fits: Fits, model: str, confidence: float, names: Sequence[str] | None = None) -> tuple[Fit, Intervals]:
     """Return the interval of each parameter, and the fit, which a profile may have improved.
 
-    :param confidence: for example 0.95
-    :param names: parameters; None: all
+    :param confidence: confidence level
+    :param names: names of the parameters; None: all parameters
     """
     while True:
         best = fits.fit(model)
@@ -396,8 +396,8 @@ def _intervals(problem: Problem, best: Fit, confidence: float, names: Sequence[s
 def _dependence(problem: Problem, profile: Profile, ends: Sequence[float], profiles: dict[str, Profile]) -> dict[
     int, str
 ]:
-    """Return the ends of an interval that exist only because another parameter is at the end of its search range, with
-    the name of that parameter."""
+    """Return the ends of an interval that are finite only because another parameter is at the end of its search range,
+    with the name of that parameter."""
     found = {}
     half = (ends[1] - ends[0]) / 2
     for way, end in zip((-1, 1), ends):

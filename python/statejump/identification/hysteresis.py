@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Friction with memory along a path of displacements: Masing's rule with return points.
 
-Let the backbone B be the force of a first loading. The friction force is a sum of B at half distances between the
-reversal points in memory, which depend only on the path. They are computed once; the force for any parameters is then
-one matrix product. (G. Masing, Proc. 2nd Int. Congr. Applied Mechanics, 1926.)
+Let the backbone B be the force of a first loading. The friction force is a sum of values of B at half distances between
+the reversal points in memory. These distances depend only on the path and are computed once; the force for any
+parameters is then one matrix product. (G. Masing, Proc. 2nd Int. Congr. Applied Mechanics, 1926.)
 """
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Backbone = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Memory:
-    """Memory of friction in every row of a path.
+    """Friction memory in every row of a path of displacements.
 
     :param half_distance: distances at which the backbone is needed [m or rad]
-    :param weights: rows of the path × half distances
-    :param loaded: memories of the same path after full slip downwards and upwards; None: the initial state is known
+    :param weights: sparse matrix (rows, half distances); the force is its product with the backbone
+    :param loaded: memories of the same path after full slip backwards and forwards; None: the initial state is known
     :param path: displacements; only if ``loaded`` is given
     """
 
@@ -34,7 +34,7 @@ class Memory:
     def force(self, backbone: Backbone, start: float = 0.0) -> np.ndarray:
         """Return the friction force in every row.
 
-        :param backbone: force of a first loading from rest, for displacements from 0
+        :param backbone: function that returns the force of a first loading from rest at a displacement
         :param start: friction in the first row as a fraction of its limit, if the initial state is unknown. Sliders
             with different limits have more than one such state; the force is interpolated between rest and full slip
         """
@@ -44,10 +44,10 @@ class Memory:
         return (1 - abs(start)) * found + abs(start) * self.loaded[start > 0].force(backbone)
 
     def stretch(self, width: float, start: float = 0.0) -> np.ndarray:
-        """Return the deflection of a spring in series with one slider that slips at deflections ±width.
+        """Return the deflection of a spring in series with a slider that slips when the deflection is ±width.
 
-        :param start: as in :meth:`force`. A slider whose start is between the two paths in ``loaded`` rests until one
-            of them moves it: exactly x = min(max(x0, x_low), x_high)
+        :param start: as for :meth:`force`. A slider whose start lies between the two paths in ``loaded`` rests until
+            one of them moves it: exactly x = min(max(x0, x_low), x_high)
         """
         def clipped(half: np.ndarray) -> np.ndarray:
             return np.minimum(half, width)
@@ -69,7 +69,7 @@ def remembered(path: np.ndarray, fresh: bool) -> Memory:
     """Return the memory of friction along a path.
 
     :param path: displacements, one per row
-    :param fresh: friction is zero in the first row and has no memory. Otherwise the path was traversed before, and
+    :param fresh: True: friction is zero in the first row and has no memory. False: the path was traversed before, and
         friction is equal at both of its ends
     """
     if fresh:
@@ -96,7 +96,7 @@ def remembered(path: np.ndarray, fresh: bool) -> Memory:
 
 
 def from_any_start(path: np.ndarray) -> Memory:
-    """Return the memory of friction along a path whose first row may have any friction."""
+    """Return the memory of friction along a path for an unknown friction force in the first row."""
     away = FAR_AWAY * float(np.ptp(path))
     rest = remembered(path, fresh=True)
     down, up = (_without_first(remembered(np.append(path[0] - sign * away, path), fresh=True)) for sign in (-1, 1))

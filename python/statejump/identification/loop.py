@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A measured loop: force over displacement, or moment over rotation, row by row as measured."""
+"""A measured loop: force over displacement, or moment over rotation, with rows in the order of measurement."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -42,14 +42,14 @@ PUSHES = -0.5
 
 @dataclass(frozen=True)
 class Loop:
-    """A loop.
+    """A measured loop of a joint.
 
-    :param name: name in tables and figures: that of the file
+    :param name: name in tables and figures: the name of the file
     :param displacement: displacement [m] or rotation [rad] of every row
     :param force: force [N] or moment [N m] of every row
     :param angular: whether the loop is moment over rotation
-    :param start: state of the joint before the first row: ``fresh``: friction is zero; ``cycled``: the joint traversed
-        the same path before; ``unknown``: friction is fitted
+    :param start: state of the joint before the first row. ``fresh``: friction is zero; ``cycled``: the joint has
+        traversed the same path before; ``unknown``: friction is fitted
     """
 
     name: str
@@ -66,7 +66,7 @@ class Loop:
         return remembered(self.displacement, self.start == "fresh")
 
     def check_sign(self) -> None:
-        """Reject a force with the sign of a reaction, as some solvers and load cells report it.
+        """Reject a loop whose force has the sign of a reaction, as some solvers and load cells report it.
 
         :raises NotAllowed: the joint generates energy along the path, or the force falls as the displacement rises
         """
@@ -81,7 +81,7 @@ class Loop:
 
     def _energy(self) -> tuple[float, float]:
         """Return the energy that the joint dissipates, and its standard deviation due to noise of the force. The
-        integral runs from the first to the last row at the middle of the path, so that springs do not contribute."""
+        integral begins and ends at rows in the middle of the path, so that springs do not contribute."""
         middle = float(np.min(self.displacement) + np.max(self.displacement)) / 2
         above = self.displacement > middle
         crossings = np.flatnonzero(above[1:] != above[:-1])
@@ -98,16 +98,16 @@ class Loop:
         return float(weights @ force), noise * float(np.linalg.norm(weights))
 
     def unit(self, dimension: str) -> str:
-        """Return the unit of a displacement, a force, a stiffness; ``-`` of a ratio."""
+        """Return the unit of a displacement, a force or a stiffness of this loop; ``-`` for a ratio."""
         return UNITS[dimension][self.angular]
 
 
 def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ignored: Sequence[str] = ()) -> Loop:
-    """Return the loop of a table or of columns.
+    """Return the loop in a table or in given columns.
 
-    :param source: columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``; ``time_s`` is
-        ignored
-    :param ignored: names of columns of a table to omit
+    :param source: table or columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``;
+        ``time_s`` is ignored
+    :param ignored: names of columns to omit from a table
     :raises StatejumpError: the file does not exist, a column is missing or unknown, a value is not finite, or the path
         is constant or has too few rows
     """
@@ -122,7 +122,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
 
 
 def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Return columns by keys with units, converted to these units; ISO times are omitted."""
+    """Return columns under keys with units, converted to these; ISO times are omitted."""
     given = {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}
     columns = [column for column in matched(list(given), COLUMNS, WORDS) if not column.iso]
     return {column.key: column.converted(given[column.name]) if given[column.name].dtype.kind in "iuf"

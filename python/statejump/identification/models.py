@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints that can be identified: parameters, force, and starts of a search. Force and displacement also stand for
+"""Joints that can be identified: parameters, force, and start points of a search. Force and displacement also mean
 moment and rotation. The force depends on the displacement path, not on its rate."""
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ LINEAR, POSITIVE = "linear", "positive"
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a joint.
+    """A parameter of a joint that can be identified.
 
-    :param name: without unit
+    :param name: name of the parameter, without unit
     :param dimension: ``force``, ``displacement``, ``stiffness``, or ``-``
-    :param scale: ``positive``: the search uses its logarithm
-    :param low: lower bound of the search, in units of the size of the loop (half of its force range, half of its
+    :param scale: ``positive`` if the search uses the logarithm of the parameter
+    :param low: lower bound of the search, in units of the loop's size (half of its force range, half of its
         displacement range); signed parameters are relative to its middle
-    :param high: upper bound
-    :param starts: starts of the search, in the same units
-    :param meaning: description in words
+    :param high: upper bound of the search
+    :param starts: start values, in the same units
+    :param meaning: meaning in words
     """
 
     name: str
@@ -64,13 +64,13 @@ Answer = Callable[[Values, np.ndarray, Memory], np.ndarray]
 
 @dataclass(frozen=True)
 class Model:
-    """A joint.
+    """A type of joint that can be identified.
 
-    :param name: name by which users select the joint
-    :param parameters: names in PARAMETERS
+    :param name: name of the joint type for users
+    :param parameters: names of its parameters in PARAMETERS
     :param answer: function that returns the force for parameters, displacements and the memory of friction
     :param formula: formula for tables
-    :param parts: joints that it contains if the parameters that they lack have no effect
+    :param parts: simpler joints that this joint equals if the parameters that they lack have no effect
     """
 
     name: str
@@ -80,14 +80,14 @@ class Model:
     parts: tuple[str, ...] = ()
 
     def starts(self, names: Sequence[str]) -> list[dict[str, float]]:
-        """Return the starts of a search for some parameters, in units of the size of the loop."""
+        """Return start values of a search for some parameters, in units of the size of the loop."""
         lists = [PARAMETERS[name].starts for name in names]
         return [dict(zip(names, values)) for values in product(*lists)]
 
 
 def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
-    """Return the force of a slide with friction f, preload P, spring k_p and play p behind a spring k, between stops
-    k_s.
+    """Return the force of a slide: a block with friction f between stops k_s, with preload P and spring k_p, driven
+    through a spring k with play p.
 
     The block rests at x while |k (u - x) - g(x)| <= f. g is the force of preload, spring k_p and stops; it increases
     with x. k x + g(x) therefore follows k u with a play of half width f. The play p widens this play in u. Within p the
@@ -125,7 +125,7 @@ def _beside(values: Values, displacement: np.ndarray) -> np.ndarray:
 def mindlin_backbone(friction: float, stiffness: float) -> Callable[[np.ndarray], np.ndarray]:
     """Return the force of a first loading under a constant normal force (Cattaneo 1938, Mindlin 1949).
 
-    T = f (1 - (1 - u/u_s)^{3/2}), u_s = 3 f/(2 k).
+    T = f (1 - (1 - u/u_s)^{3/2}), u_s = 3 f/(2 k), with friction limit f, stiffness k.
     """
     gross = 1.5 * friction / stiffness
 
@@ -146,7 +146,7 @@ def iwan_backbone(friction: float, stiffness: float, exponent: float, ratio: flo
 ]:
     """Return the force of a first loading of the four-parameter Iwan joint (Segalman, J. Appl. Mech. 72, 2005).
 
-    F = K φ (s - s^{χ+2}/((1 + β)(χ + 2))), s = u/φ, up to φ = F_S (1 + β)/(K (β + (χ + 1)/(χ + 2))), F_S beyond.
+    F = K φ (s - s^{χ+2}/((1 + β)(χ + 2))) with s = u/φ, up to u = φ = F_S (1 + β)/(K (β + (χ + 1)/(χ + 2))); then F_S.
     """
     last = friction * (1 + ratio) / (stiffness * (ratio + (exponent + 1) / (exponent + 2)))
 
@@ -206,9 +206,9 @@ def parts_of(name: str) -> set[str]:
 
 
 def with_part(model: Model, part: Model, values: Values, memory: Memory, displacement: np.ndarray) -> dict[str, float]:
-    """Return the parameters for which a joint has the same force as a joint that it contains.
+    """Return the parameters with which a joint has the same force as a simpler joint that it contains.
 
-    :param values: parameters of the part
+    :param values: parameters of the simpler joint
     """
     limits = {"friction": 0.0, "preload": 0.0, "preload_stiffness": 0.0, "play": 0.0, "stop_stiffness": inf,
               "clearance_minus": inf, "clearance_plus": inf, "iwan_exponent": -0.5, "iwan_ratio": inf, START: 0.0}

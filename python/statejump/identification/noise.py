@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Correlation of the noise between rows: the equivalent number of independent rows, and the widening of intervals.
 
-With correlated noise, least squares remain unbiased, but the variance of an estimate grows. Let h be the part of a
-parameter's derivative that no other parameter explains. Its estimate has the variance s²/(h·h) for independent noise of
-variance s², and κ s²/(h·h) for noise with correlations ρ, with κ = Σ ρ(i-j) h(i) h(j)/(h·h). An autoregression of the
-residuals (Burg) estimates the correlations; BIC chooses its order.
+With correlated noise, least squares remain unbiased, but the variance of an estimate grows. Let h be the part of the
+force's derivative by a parameter that no other parameter explains. Its estimate has the variance s²/(h·h) for
+independent noise of variance s², and κ s²/(h·h) for noise with correlations ρ, with κ = Σ ρ(i-j) h(i) h(j)/(h·h). An
+autoregression of the residuals (Burg) estimates the correlations; BIC chooses its order.
 
 The misfit of the formula of a joint repeats in every cycle, so averaging over cycles does not reduce it. With
 correlation c of residuals one cycle apart, C cycles multiply κ by 1 + (C - 1) c.
@@ -28,10 +28,10 @@ REFINEMENTS = 5  # iterations of the correction for fitted parameters; its error
 
 @dataclass(frozen=True)
 class Noise:
-    """Correlations of the noise.
+    """Correlations of the noise of a loop.
 
-    :param correlations: between rows with distances 0, 1, 2, …
-    :param repeated: correlation between rows one cycle apart
+    :param correlations: correlations between rows 0, 1, 2, … apart
+    :param repeated: correlation between residuals one cycle apart
     :param cycles: number of cycles
     """
 
@@ -45,16 +45,16 @@ class Noise:
 
     @cached_property
     def rows_each(self) -> float:
-        """Number of rows that count as one independent row: 1 + 2 Σ ρ up to the first correlation that is not positive,
-        times the factor of the cycles."""
+        """Number of rows that count as one independent row: 1 + 2 Σ ρ, summed up to the first correlation ρ that is not
+        positive, times the factor for repeated cycles."""
         positive = self.correlations > 0
         last = len(positive) if positive.all() else int(np.argmin(positive))
         return max(1.0, 2 * float(self.correlations[:last].sum()) - 1) * self._by_cycles
 
     def inflation(self, derivative: np.ndarray) -> float:
-        """Return κ, the factor by which the variance of an estimate grows.
+        """Return κ, the factor by which correlation increases the variance of an estimate.
 
-        :param derivative: h, of every row
+        :param derivative: h of the estimated parameter in every row, see the module
         """
         lags = min(len(self.correlations), len(derivative))
         products = _products(derivative, lags)
@@ -67,7 +67,7 @@ INDEPENDENT = Noise(np.ones(1))
 
 
 def noise_of(residual: np.ndarray, jacobian: np.ndarray, path: np.ndarray) -> Noise:
-    """Return the noise that explains the correlation of given residuals.
+    """Return the noise whose correlations explain those of given residuals.
 
     :param residual: residual of every row
     :param jacobian: derivatives of the residual by the parameters (rows, parameters)
@@ -100,8 +100,8 @@ def _repeated(residual: np.ndarray, path: np.ndarray, rows_each: float) -> dict[
 def _near(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
     """Return the correlations of successive rows.
 
-    A fit absorbs slow noise: its residuals are less correlated than the noise. With an orthonormal basis Q of the
-    Jacobian and the correlation matrix R of the noise, that of the residuals is (1 - Q Qᵀ) R (1 - Q Qᵀ).
+    A fit absorbs slow noise: its residuals are less correlated than the noise. If Q is an orthonormal basis of the
+    Jacobian and R the correlation matrix of the noise, the matrix of the residuals is (1 - Q Qᵀ) R (1 - Q Qᵀ).
     """
     most = min(MOST_LAGS, len(residual) // ROWS_A_LAG)
     seen = _products(residual, most + 1)
@@ -124,14 +124,14 @@ def _near(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
 
 
 def _products(values: np.ndarray, lags: int) -> np.ndarray:
-    """Return Σ v_i v_{i+k} for k = 0, 1, ... lags - 1."""
+    """Return the sums Σ v_i v_{i+k} over i, for k = 0, 1, ... lags - 1."""
     if lags <= 64:
         return np.array([values[:len(values) - lag] @ values[lag:] for lag in range(lags)])
     return np.asarray(fftconvolve(values, values[::-1])[len(values) - 1:len(values) - 1 + lags])
 
 
 def _basis(jacobian: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of the columns; linearly dependent columns are omitted."""
+    """Return an orthonormal basis of the columns of a Jacobian; linearly dependent columns are omitted."""
     scale = np.linalg.norm(jacobian, axis=0)
     columns = jacobian[:, scale > 0] / scale[scale > 0]
     if not columns.shape[1]:
@@ -141,7 +141,7 @@ def _basis(jacobian: np.ndarray) -> np.ndarray:
 
 
 def _lost(basis: np.ndarray, correlations: np.ndarray, order: int) -> np.ndarray:
-    """Return the reduction by the fit of the mean products of noise 0 to ``order`` rows apart."""
+    """Return by how much the fit reduces the mean products of noise in rows 0 to ``order`` apart."""
     rows = len(basis)
     both = np.concatenate((correlations[:0:-1], correlations))
     turned = np.array([fftconvolve(column, both)[len(correlations) - 1:len(correlations) - 1 + rows]
@@ -156,7 +156,7 @@ def _lost(basis: np.ndarray, correlations: np.ndarray, order: int) -> np.ndarray
 
 
 def _burg(values: np.ndarray, order: int) -> tuple[np.ndarray, list[float]]:
-    """Return the coefficients of an autoregression, and the remaining variance of each order (J. P. Burg, 1967)."""
+    """Return the coefficients of an autoregression, and the variance that each order leaves (J. P. Burg, 1967)."""
     forward, backward = values[1:], values[:-1]
     coefficients, left = np.zeros(0), [float(values @ values) / len(values)]
     for _ in range(order):
@@ -175,7 +175,7 @@ def _order(values: np.ndarray, most: int) -> int:
 
 
 def _autoregression(products: np.ndarray) -> np.ndarray | None:
-    """Return the coefficients of the autoregression with these products (Levinson); None: it is unstable."""
+    """Return the coefficients of the autoregression with the given mean products (Levinson); None if it is unstable."""
     coefficients, left = np.zeros(0), float(products[0])
     for lag in range(1, len(products)):
         if not left > 0:
@@ -189,7 +189,7 @@ def _autoregression(products: np.ndarray) -> np.ndarray | None:
 
 
 def _correlations(coefficients: np.ndarray, rows: int) -> np.ndarray:
-    """Return the correlations of an autoregression up to the last one that is not negligible."""
+    """Return the correlations of an autoregression, up to the last correlation that is not negligible."""
     impulse = np.zeros(4 * rows)
     impulse[0] = 1.0
     answer = lfilter([1.0], np.append(1.0, -coefficients), impulse)

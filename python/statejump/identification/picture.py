@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def drawn(found: Identification, axes: tuple[Axes, Axes] | None = None) -> Figure:
-    """Return the picture, or draw it into two given axes: loop and residual."""
+    """Return the picture as a new figure, or draw loop and residual into two given axes."""
     if axes is not None:
         _loop(axes[0], found)
         _residual(axes[1], found)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Result of an identification: the joint, its parameters with intervals, and the parameters that the loop does not
-determine."""
+"""Result of an identification: the joint, the intervals of its parameters, and the undetermined parameters."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -42,16 +41,16 @@ class Identification:
     """A joint identified from a loop.
 
     :param loop: the measured loop
-    :param candidates: the fitted joints, the best by BIC first
-    :param fit: fit of the chosen or requested joint
-    :param intervals: intervals of its parameters
-    :param because: for parameters that are not identified: name of the parameter at the end of its search range that
-        causes this
-    :param limits: for parameters that the joint lacks: the larger joint that has the parameter, and its interval there
+    :param candidates: the fitted joints, sorted by BIC with the best first
+    :param fit: fit of the joint that was chosen or requested
+    :param intervals: confidence intervals of its parameters
+    :param because: for each parameter that is not identified: the parameter at the end of its search range that causes
+        this
+    :param limits: for each parameter that the joint lacks: a larger joint that has it, and its interval
     :param confidence: confidence level of the intervals
     :param target: item of a case for the joint, one of case_section.TARGETS
-    :param normal_force_N: normal force in the test; None: unknown
-    :param journal_radius_m: radius of the journal of a joint that rotates; None: unknown
+    :param normal_force_N: normal force in the test [N]; None: unknown
+    :param journal_radius_m: radius of the journal of a rotating joint [m]; None: unknown
     """
 
     loop: Loop
@@ -86,17 +85,17 @@ class Identification:
                                     self.normal_force_N, self.journal_radius_m, self.loop.angular)
 
     def joint(self) -> str:
-        """Return the section of a case file; parameters that the loop does not determine are comments."""
+        """Return the section of a case file. Parameters that the loop does not determine become comments."""
         return "\n".join(case_section.section(self.target, self.entries, self.loop.name))
 
     def changes(self) -> dict[str, float]:
-        """Return the argument of ``case.changed``: values by key, for the determined parameters."""
+        """Return the argument for ``case.changed``: values by key, for the parameters that the loop determines."""
         before = case_section.TARGETS[self.target][1]
         return {f"{before}.{entry.key}": entry.value for entry in self.entries if entry.value is not None}
 
     def distributions(self) -> dict[str, dict[str, float | str]]:
-        """Return the argument of ``sj.montecarlo``. The distributions describe the uncertainty of the parameters of
-        this joint, drawn independently. To estimate joint-to-joint scatter, test several joints."""
+        """Return the argument for ``sj.montecarlo``: independent distributions that describe the uncertainty of this
+        joint's parameters. To estimate joint-to-joint scatter, test several joints."""
         return case_section.distributions(self.target, self.entries)
 
     @cached_property
@@ -144,8 +143,8 @@ class Identification:
         return sentences
 
     def _extrapolated(self) -> list[str]:
-        """Return a note if the loop has no gross slip, so that a law of partial slip extrapolates the friction
-        limit."""
+        """Return a note that the friction limit is extrapolated, if a law of partial slip has no gross slip in the
+        loop."""
         if self.fit.model.answer is MODELS["coulomb"].answer or "friction" not in self.fit.values:
             return []
         alone = {**self.fit.values, "preload": 0.0, "preload_stiffness": 0.0}
@@ -220,7 +219,7 @@ class Identification:
         return [models, parameters, *(f"note: {note}" for note in self.notes)]
 
     def write(self, folder: Path) -> list[Path]:
-        """Write tables, section, distributions and picture into a folder; return the paths."""
+        """Write tables, section of a case file, distributions and picture into a folder; return the paths."""
         rows = folder / "fit.csv"
         write_columns(self._columns(), rows)
         note = [f"# {note}" for note in self.notes]
@@ -256,17 +255,18 @@ def identify(
     Least squares find the parameters; noise of the force may be correlated. Profile likelihood gives the intervals, and
     BIC selects the joint. Notes list the parameters that the loop does not determine.
 
-    :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
-        the same in other units, row by row as measured. The force is positive if it resists a positive displacement
-    :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
-    :param start: friction before the first row: ``fresh``: zero; ``cycled``: the path was traversed before;
+    :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, also
+        in other units, with rows in the order of measurement. The force is positive if it resists a positive
+        displacement
+    :param model: one or several names of joints, or ``auto``: all of :data:`statejump.identification.models.MODELS`
+    :param start: friction before the first row. ``fresh``: zero; ``cycled``: the path was traversed before;
         ``unknown``: it is a parameter
     :param confidence: confidence level of the intervals, 0.5 to 0.999
     :param target: item of a case for the joint: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella``
         (default of rotations), ``torsion_spring``, ``iwan_joint``
-    :param normal_force_N: normal force in the test [N]; converts friction to a coefficient
-    :param journal_radius_m: radius of the journal [m]; converts a moment of friction to a coefficient
-    :param ignored: names of columns of a table that are not used
+    :param normal_force_N: normal force in the test [N]; it converts the friction force to a friction coefficient
+    :param journal_radius_m: radius of the journal [m]; it converts the friction moment to a friction coefficient
+    :param ignored: names of columns to omit from a table
     :raises StatejumpError: the file is not a loop, or the joint is unknown
     """
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
@@ -300,7 +300,7 @@ def identify(
 
 
 def _larger(name_of_best: str, name: str) -> str | None:
-    """Return the smallest joint that has the parameters of a joint and one more; None: there is none."""
+    """Return the smallest joint that has one given parameter more than a joint; None if there is no such joint."""
     model = MODELS[name_of_best]
     have = set(model.parameters)
     if name in have or model.name == "linear" and name != "friction":

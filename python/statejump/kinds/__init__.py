@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registry of kinds of cases. A kind is a subfolder or a user's module, and one entry.
+"""The registry of kinds of cases. A kind is a subfolder here or a user's module, and one entry of the registry.
 
-:func:`register` adds a user's kind. The environment variable ``STATEJUMP_KINDS`` does so for every command: a list of
-``module:OBJECT``, separated by commas.
+:func:`register` adds a user's kind. The environment variable ``STATEJUMP_KINDS`` adds users' kinds for every command.
+It is a list of ``module:OBJECT``, separated by commas.
 """
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ def _object(place: str) -> Kind[Any]:
 def register(place: str) -> Kind[Any]:
     """Add or replace a user's kind, and return it.
 
-    :param place: ``module:OBJECT``; workers of a campaign import it too
-    :raises StatejumpError: the object does not exist
+    :param place: name of the kind as ``module:OBJECT``; workers of a campaign import it too
+    :raises StatejumpError: the module does not contain the object
     """
     found = _object(place)
     KINDS[found.name], _loaded[found.name] = place, found
@@ -88,9 +88,9 @@ def has(case: Case, protocol: type) -> bool:
 
 
 def require(case: Case, protocol: type[Capability]) -> Capability:
-    """Return the kind of a case, typed as a capability.
+    """Return the kind of a case, typed as the given capability.
 
-    :raises NotAllowed: it lacks the capability; the sentence names the kinds that have it
+    :raises NotAllowed: the kind lacks the capability; the message names the kinds that have it
     """
     return needed(of(case), protocol, case)
 
@@ -101,5 +101,5 @@ def names_of_kinds_with(protocol: type) -> list[str]:
 
 
 def columns_of(name: str) -> tuple[str, ...]:
-    """Return the columns of a kind in the order of its CSV files; for an unknown kind the common ones."""
+    """Return the columns of a kind in the order of its CSV files; for an unknown kind, the columns of all kinds."""
     return kind(name).COLUMNS if name in names() else ("time_s", "temperature_change_K")

@@ -38,7 +38,7 @@ class History:
 
 
 def history_of(case: Case, model: str) -> History:
-    """Return the size of the history of a future run.
+    """Return the expected size of the history of a run.
 
     :param model: ``reduced`` or ``dem``
     """
@@ -49,7 +49,7 @@ def history_of(case: Case, model: str) -> History:
 
 
 def free_memory() -> int | None:
-    """Return the memory that a new process can use [bytes]; None: the system does not report it."""
+    """Return the memory that a new process can use [bytes]; None if the system does not report it."""
     try:
         lines = Path("/proc/meminfo").read_text(encoding="utf-8").splitlines()
         return next(1024 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loading of cases from files, names of shipped cases, and dicts. A case is checked as a whole, or refused with one
-failure."""
+"""Loading of cases from files, names of shipped cases, and dicts. Every case is checked as a whole; the first failure
+is raised."""
 from __future__ import annotations
 
 import difflib
@@ -41,13 +41,13 @@ def _kind_name(data: Mapping[str, Any]) -> str:
 def parse_case(
     data: Mapping[str, Any], file: Path | None = None, text: str = "", files_from: Path | None = None
 ) -> Case:
-    """Return the case of a parsed document.
+    """Return the case of a parsed case file.
 
     :param data: sections and keys, as tomllib returns them
-    :param file: its file, for messages and for paths in the case
-    :param text: the file as read
-    :param files_from: folder of the temperature files and tables that the case names; None: such names are rejected
-    :raises StatejumpError: one failure; of several the first
+    :param file: path of the file, for messages and for relative paths in the case
+    :param text: text of the file
+    :param files_from: folder of the temperature files and tables that the case names; None: such names are refused
+    :raises StatejumpError: the first failure
     """
     with located(file=file):
         of_kind = kind(_kind_name(data))
@@ -76,10 +76,10 @@ def found_case(path: str | Path) -> Path:
 
 
 def load_case(source: str | Path | Mapping[str, Any]) -> Case:
-    """Return a case.
+    """Return a case from a file, a shipped case or a dict.
 
     :param source: path of a case file; name of a shipped case, for example ``table1``; or sections and keys as a dict
-    :raises StatejumpError: the file does not exist, or the case is invalid: file, key, value, range
+    :raises StatejumpError: the file does not exist, or the case is invalid
     """
     if isinstance(source, Mapping):
         return parse_case(plain(source), files_from=Path())

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contract of a kind of case: one object declares all that other modules know of the kind.
+"""Contract of a kind of case: one object defines everything that other modules use of the kind.
 
 A kind is a subclass of :class:`Kind` with a name, a class of cases and capabilities. A capability is a protocol of one
-or several related methods. A kind that lacks a capability does not define its methods, and a command that needs it
-rejects the case. :mod:`statejump.control.capabilities` (design) and :mod:`statejump.report.capabilities` (text,
-figures, page) declare the capabilities of later layers.
+or several related methods. A kind that lacks a capability does not define its methods, and commands that need the
+capability reject its cases. :mod:`statejump.control.capabilities` (design) and :mod:`statejump.report.capabilities`
+(text, figures, page) declare the capabilities of later layers.
 
 A kind of the package refers to the functions of its methods by name (:class:`.Later`), so that a command imports only
 what it needs. A user's kind may have plain methods.
@@ -33,9 +33,9 @@ _OTHERS = Later("statejump.kinds:names_of_kinds_with")
 
 
 def capability(command: str) -> Callable[[type[Capability]], type[Capability]]:
-    """Declare a protocol as a capability of kinds.
+    """Declare a protocol as a capability of kinds of cases.
 
-    :param command: the command that needs it, for the message that rejects other kinds
+    :param command: the command that needs the capability, for the message that rejects other kinds
     """
     def declared(protocol: type[Capability]) -> type[Capability]:
         _COMMANDS[protocol] = command
@@ -89,14 +89,14 @@ class DemInput(Protocol):
 
 @capability("dem --keep-input")
 class DemValues(Protocol):
-    """Data that the script in YADE reads; :class:`Kind` makes them from the scene's input."""
+    """Data for the script in YADE. :class:`Kind` makes them from the input of the DEM's scene."""
 
     def dem_values(self, case: Any) -> dict[str, Any]: ...
 
 
 @capability("dem run")
 class DemResult(Protocol):
-    """Makes a finished or interrupted DEM run from the columns that YADE wrote."""
+    """Makes a DEM run, finished or interrupted, from the columns that YADE wrote."""
 
     def dem_run(self, case: Any, columns: Columns, about: Mapping[str, Any]) -> Run: ...
 
@@ -140,14 +140,14 @@ class SceneDescription(Protocol):
 
 @capability("sweep")
 class Outcomes(Protocol):
-    """Numbers that a campaign records of a run, by the names in ``Kind.OUTCOMES``."""
+    """Numbers that a campaign records for every run, under the names in ``Kind.OUTCOMES``."""
 
     def outcomes(self, case: Any, run: Run) -> dict[str, float]: ...
 
 
 @capability("quick")
 class QuickModel(Protocol):
-    """The reduced model with as few samples as its outcomes need, for campaigns."""
+    """The reduced model for campaigns, with only as many samples as its outcomes need."""
 
     def quick(self, case: Any) -> Run: ...
 
@@ -177,9 +177,9 @@ CaseType = TypeVar("CaseType", bound=Definition)
 
 
 class Kind(Generic[CaseType]):
-    """A kind of case; see the module.
+    """A kind of case; the module describes the contract.
 
-    ``Case`` is the class of its cases: keys with unit, range, default and source.
+    ``Case`` is the class of its cases, with unit, range, default and source of every key.
     """
 
     name: ClassVar[str]
@@ -199,11 +199,11 @@ class Kind(Generic[CaseType]):
     SCENE: ClassVar[str] = ""
 
     def dem(self, case: CaseType, on_progress: OnProgress) -> Run:
-        """Run a case in YADE. A kind whose scene needs more than the case overrides this method."""
+        """Run a case in YADE. A kind overrides this method if its scene needs more data than the case."""
         return yade_process.run(case, self.dem_values(case), needed(self, DemResult, case).dem_run, on_progress)
 
     def check_dem(self, case: CaseType) -> None:
-        """Raise StatejumpError if the DEM cannot run a case, as far as this is known before a solution. A kind whose
+        """Raise StatejumpError if the DEM cannot run a case, as far as this is known without solving it. A kind whose
         scene needs a solution overrides this method."""
         self.dem_values(case)
         yade_process.find_yade()
@@ -225,8 +225,8 @@ class Kind(Generic[CaseType]):
         return self.OUTCOMES
 
     def recorded(self, case: CaseType, run: Run) -> dict[str, float]:
-        """Return the outcomes of a run, plus ``AT_PROGRAM_END`` if the program ends at another temperature than it
-        began."""
+        """Return the outcomes of a run, and ``AT_PROGRAM_END`` if the program does not end at its initial
+        temperature."""
         found = needed(self, Outcomes, case).outcomes(case, run)
         return found if case.ending is None else {**found, **{name: run.summary[name] for name in self.AT_PROGRAM_END}}
 
@@ -239,7 +239,7 @@ class Kind(Generic[CaseType]):
         return self.SCENE or f"scene_{self.name}"
 
     def case_from(self, data: Mapping[str, Any]) -> Definition:
-        """Return the case of a parsed document. :raises StatejumpError: one failure, without the file's name"""
+        """Return the case of a parsed case file. :raises StatejumpError: the first failure, without the file's name"""
         for section in self.Case.NOT_IN_FILE:
             if section in data:
                 raise NotAllowed(f"section [{section}]", code="not_from_file", cause=self.Case.NOT_IN_FILE[section])
@@ -256,9 +256,9 @@ def supports(kind: Kind[Any], protocol: type) -> bool:
 
 
 def needed(kind: Kind[Any], protocol: type[Capability], case: Definition) -> Capability:
-    """Return a kind, typed as a capability.
+    """Return a kind, typed as the given capability.
 
-    :raises NotAllowed: it lacks the capability; the sentence names the kinds that have it
+    :raises NotAllowed: the kind lacks the capability; the message names the kinds that have it
     """
     if supports(kind, protocol):
         return cast(Capability, kind)

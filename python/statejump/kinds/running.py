@@ -23,12 +23,12 @@ Trace = str | Path | Callable[[tuple[Any, ...]], object]
 
 def run(case: Case, name: str, progress: Progress, *, trace: Trace | None = None,
         keep_input: str | Path | None = None) -> Run:
-    """Run a case in a model.
+    """Run a case in one of its models.
 
     :param name: ``reduced``, ``dynamic`` or ``dem``
-    :param progress: as of :meth:`statejump.Case.reduced`
-    :param trace: as of :meth:`statejump.Case.reduced`
-    :param keep_input: as of :meth:`statejump.Case.dem`
+    :param progress: as for :meth:`statejump.Case.reduced`
+    :param trace: as for :meth:`statejump.Case.reduced`
+    :param keep_input: as for :meth:`statejump.Case.dem`
     """
     if trace is not None:
         return _traced(case, name, progress, trace)
@@ -51,7 +51,7 @@ def _traced(case: Case, name: str, progress: Progress, trace: Trace) -> Run:
 
 
 def _keeping(case: Case, folder: Path) -> Callable[[Any, OnProgress], Run]:
-    """Return a function that runs the DEM and keeps its input in a folder."""
+    """Write the input of a DEM run into a folder; return a function that runs the DEM with this input."""
     make_run = require(case, DemResult).dem_run
     values = require(case, DemValues).dem_values(case)
     yade_process.keep_input(values, folder)
@@ -65,7 +65,7 @@ def keep_input(case: Case, folder: Path) -> str:
 
 
 def view(case: Case, folder: Path) -> None:
-    """Write script and data of the DEM run into a folder, and open YADE's 3-D view of their scene."""
+    """Write script and data of the DEM run into a folder, and open YADE's 3-D view of this input."""
     yade_process.check_display()
     yade_process.check_folder(folder)
     values = require(case, DemValues).dem_values(case)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contact laws: their descriptions, their response along a path, curves, and user laws."""
+"""Contact laws: descriptions, response of a law along a path, curves, and laws of the user."""
 from __future__ import annotations
 
 from statejump.laws.drive import drive

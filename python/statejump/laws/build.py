@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""User laws: one header, compiled with the kernel into a shared object that programs find by the name of the law."""
+"""Laws of the user: a header, compiled with the kernel into a shared object, which programs find by the law's name."""
 from __future__ import annotations
 
 import hashlib
@@ -37,15 +37,15 @@ def default_folder() -> Path:
 
 
 def build(header: Path, folder: Path | None = None) -> Path:
-    """Compile the law of a header, and write it to a folder that programs search.
+    """Compile the law in a header, and write the shared object to a folder that programs search.
 
-    The header defines a type like those of the catalogue, and declares it as ``using UserLaw = ...;``. Includes are
-    searched beside the header and in the kernel.
+    The header defines a type like those of the catalogue, and declares it as ``using UserLaw = ...;``. Its own includes
+    are searched beside it and in the kernel.
 
     :param header: file of the law
     :param folder: folder of the shared object; None: :func:`default_folder`. Another folder is searched if
         ``$STATEJUMP_LAWS`` lists it.
-    :return: the shared object, ``<kind>_<name>.so``; it replaces an older one of that name
+    :return: path of the shared object, ``<kind>_<name>.so``; it replaces an older one of that name
     :raises StatejumpError: the header does not exist, there is no compiler, the kernel headers differ from those of
         this build, the header does not compile (with the compiler's first error), or the law is unusable
     """
@@ -85,7 +85,7 @@ def find_compiler() -> str:
 
 
 def compile_law(compiler: str, header: Path, kernel: str, folder: Path) -> Path:
-    """Compile a header; return the shared object in the folder. :raises StatejumpError: it does not compile"""
+    """Compile a header; return the path of the shared object. :raises StatejumpError: the header does not compile"""
     source, made = folder / "law.cpp", folder / "law.so"
     name = str(header).replace("\\", "\\\\").replace('"', '\\"')
     source.write_text(SOURCE.format(header=f'"{name}"', kernel=kernel), encoding="utf-8")
@@ -104,7 +104,7 @@ def compile_law(compiler: str, header: Path, kernel: str, folder: Path) -> Path:
 
 
 def kernel_hash(include: Path) -> str:
-    """Return the hash of the kernel headers below a folder, as cmake/KernelHash.cmake computes it."""
+    """Return the hash of the kernel headers in a folder, as cmake/KernelHash.cmake computes it."""
     lines = ""
     for path in sorted(path.relative_to(include).as_posix() for path in include.glob("statejump/kernel/**/*.hpp")):
         lines += f"{path} {hashlib.sha256((include / path).read_bytes()).hexdigest()}\n"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Curves of the contact laws: forces of a joint, one impact, and a figure of both."""
+"""Curves of the contact laws: forces in a joint, one impact, and a figure that shows both."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ STYLES = (
 
 @dataclass(frozen=True)
 class Joint:
-    """A clearance revolute, as input of the normal laws, and its effective mass."""
+    """A clearance revolute as the input of the normal laws, and the effective mass for impacts."""
 
     title: str
     journal_radius_m: float
@@ -50,12 +50,12 @@ def paper_joint() -> Joint:
 
 
 def reduced_mass_kg(mass_ab_kg: float, mass_bc_kg: float) -> float:
-    """Return the reduced mass of two links that meet at their tips, with a third of each link's mass at its tip."""
+    """Return the reduced mass of two links that meet at their tips, each with a third of its mass at its tip."""
     return 1 / (3 / mass_ab_kg + 3 / mass_bc_kg)
 
 
 def normal_force(name: str, joint: Joint, depth_m: np.ndarray) -> dict[str, np.ndarray]:
-    """Return force, stiffness, contact width, energy of a normal law. :raises ValueError: the depth is out of range"""
+    """Return force, stiffness, contact width and energy of a normal law. :raises ValueError: a depth is out of range"""
     return _engine.normal_force(
         name, depth_m, joint.journal_radius_m, joint.bearing_radius_m, joint.contact_length_m,
         joint.effective_young_modulus_Pa,
@@ -63,8 +63,8 @@ def normal_force(name: str, joint: Joint, depth_m: np.ndarray) -> dict[str, np.n
 
 
 def range_end_m(name: str, joint: Joint) -> tuple[float, bool]:
-    """Return the depth [m] at which the curve of a normal law ends, and whether the law itself rejects larger depths.
-    Without such a limit, the curve ends where the contact is as wide as the journal."""
+    """Return the depth [m] at which the curve of a normal law ends, and whether the law rejects larger depths. If it
+    does not, the curve ends where the contact is as wide as the journal."""
     end = _engine.largest_depth_m(name, joint.journal_radius_m, joint.bearing_radius_m)
     if end < inf:
         return end, True
@@ -87,10 +87,10 @@ class Impact:
 
 def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
            speed_m_per_s: float = IMPACT_SPEED_m_per_s, steps: int = 1000) -> Impact:
-    """Integrate one impact on ``IMPACT_LAW`` by Runge-Kutta steps.
+    """Integrate one impact of the joint with ``IMPACT_LAW`` by Runge-Kutta steps.
 
     :param restitution: coefficient of restitution for the dissipation law
-    :param steps: number of steps in about a third of the impact
+    :param steps: number of time steps in about a third of the impact
     """
     mass = joint.reduced_mass_kg
     ratio = _engine.damping_ratio_s_per_m(dissipation, restitution, speed_m_per_s)
@@ -118,7 +118,7 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
 
 
 def figure(joint: Joint, folder: Path, name: str) -> list[Path]:
-    """Write ``<name>.png`` and ``<name>.svg``: every normal law, and one impact per dissipation law."""
+    """Draw every normal law, and one impact per dissipation law; write ``<name>.png`` and ``<name>.svg``."""
     with project_style():
         drawing, (left, right) = panels(1, 2, (9.5, 4.6))
         _draw_normal(left, joint)

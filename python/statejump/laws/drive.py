@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Response of any law of the catalogue at one contact that is driven along a given path, for tests."""
+"""Response of any law of the catalogue at one contact that is driven along a given path, for tests of laws."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -43,28 +43,28 @@ def drive(
 ) -> dict[str, np.ndarray]:
     """Drive one contact along a path, and return the response of a law of the catalogue.
 
-    The contact begins at the first row, without slide. A row is a reversal point of the path, or a point of a straight
-    section. A negative penetration depth is an open contact: it has no force, and friction loses its memory. When the
-    depth is positive again, a new contact begins.
+    The contact begins at the first row, without slide. Between two rows the path is straight. A negative penetration
+    depth is an open contact: it has no force, and friction loses its memory. When the depth is positive again, a new
+    contact begins.
 
     Columns of the history: ``penetration_depth_m`` or ``normal_force_N``; ``slide_m``, or ``slide_x_m`` with
-    ``slide_y_m``, or ``tangential_force_N``; ``time_s`` for a law that depends on velocity. Slides are those of body 1
-    against body 2; a tangential force is positive along the slide that causes it.
+    ``slide_y_m``, or ``tangential_force_N``; ``time_s`` for a law that depends on velocity. A slide is that of body 1
+    relative to body 2; a tangential force is positive along the slide that causes it.
 
-    :param law: name of a friction law, under Hertz's pressure; of a normal law, with Mindlin's friction; or of a
-        dissipation law, with both
+    :param law: name of a friction law (with Hertz's pressure), a normal law (with Mindlin's friction), or a dissipation
+        law (with both)
     :param history: the columns, or a CSV file with them
     :param effective_young_modulus_Pa: E* [Pa], 1/E* = (1 - ν1²)/E1 + (1 - ν2²)/E2
     :param effective_shear_modulus_Pa: G* [Pa], 1/G* = (2 - ν1)/G1 + (2 - ν2)/G2
     :param effective_radius_m: R [m]; for a journal in a bore R1 R2/(R2 - R1)
     :param friction_coefficient: μ [-]
     :param steps_per_row: number of equal steps between two rows
-    :param radial_clearance_m: R2 - R1 [m]; default: that of a flat wall. A law of a line contact needs it
+    :param radial_clearance_m: R2 - R1 [m]; default: that of a flat wall. Laws of line contacts need it
     :param contact_length_m: length of a line contact [m]; default: that of the catalogue
-    :param restitution: for a dissipation law [-]; default: that of the catalogue
+    :param restitution: coefficient of restitution, for a dissipation law [-]; default: that of the catalogue
     :param smallest_impact_speed_m_per_s: for a dissipation law; default: that of the catalogue
-    :param v0_m_per_s: for the friction law that reads it; default: that of the catalogue
-    :param v1_m_per_s: likewise
+    :param v0_m_per_s: v0 of the friction law that reads it; default: that of the catalogue
+    :param v1_m_per_s: v1 of the friction law that reads it; default: that of the catalogue
     :return: arrays by column, with one value per step: the columns of the history; ``row`` (counted from 1, with
         fractions between); those of ``penetration_depth_m``, slides, ``normal_force_N``, ``tangential_force_N`` that
         the history lacks (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies ``normal_elastic_energy_J``
@@ -116,7 +116,7 @@ def drive(
 
 
 def drive_file(law: str, history: Path, written: Path, **options: Any) -> Path:
-    """As :func:`drive`, from one CSV file to another. Return the written file."""
+    """Do the same as :func:`drive`, from one CSV file to another. Return the path of the written file."""
     write_columns(drive(law, history, **options), written)
     return written
 
@@ -144,7 +144,7 @@ def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict
 
 
 def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
-    """Raise an error for columns that do not define a path for the law. :raises StatejumpError: the first fault"""
+    """Raise an error if columns do not define a path for the law. :raises StatejumpError: the first fault"""
     for name in columns:
         if name not in COLUMNS:
             near = get_close_matches(name, COLUMNS, 1)
@@ -200,8 +200,8 @@ def _or_default(parameter: str, value: float | None) -> float:
 
 
 def _named(path: dict[str, np.ndarray], answer: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the columns of the path, and those of the response that the path lacks. A path in one direction has no
-    columns for the second direction."""
+    """Return the columns of the path, and those columns of the response that the path lacks. If the path has only one
+    direction, columns of the second direction are omitted."""
     if "slide_y_m" not in path:
         for name in ("slide_y_m", "tangential_force_y_N"):
             del answer[name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Descriptions of the laws in the catalogue: the traits of their C++ types, as data."""
+"""Descriptions of the laws in the catalogue: data that hold the traits of their C++ types."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ class Law:
 
 
 def catalogue(kind: str) -> tuple[Law, ...]:
-    """Return the laws of a kind, one of ``KINDS``, in the order of the catalogue. :raises ValueError: no such kind"""
+    """Return the laws of a kind in ``KINDS``, in the order of the catalogue. :raises ValueError: the kind is unknown"""
     return tuple(
         Law(**dict(declared, parameters=tuple(Parameter(**each) for each in declared["parameters"])))
         for declared in _engine.laws(kind)
@@ -56,12 +56,12 @@ def catalogue(kind: str) -> tuple[Law, ...]:
 
 
 def names(kind: str) -> list[str]:
-    """Return the names of the laws of a kind. :raises ValueError: no such kind"""
+    """Return the names of the laws of a kind. :raises ValueError: the kind is unknown"""
     return _engine.law_names(kind)
 
 
 def law(kind: str, name: str) -> Law:
-    """Return the law of a kind with that name. :raises ValueError: it does not exist; the message lists the names"""
+    """Return the law of a kind with a given name. :raises ValueError: it is unknown; the message lists known names"""
     for each in catalogue(kind):
         if each.name == name:
             return each

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Page of a campaign, from its table of samples: distributions of outcomes, or their curves over a grid, and their
-correlation with the varied parameters."""
+"""Page of a campaign: distributions of outcomes or, for a grid, their curves, and their correlation with the varied
+parameters. The data are the campaign's table of samples."""
 from __future__ import annotations
 
 import json
@@ -23,7 +23,7 @@ FEWEST_MANY_POINTS = 2000  # number of points of a sweep above which the page om
 
 
 def _one(place: str, value: Any) -> Any:
-    """Return the value of an attribute: a single text or number. :raises ValueError: it has another type"""
+    """Return the value of an HDF5 attribute: a single text or number. :raises ValueError: it is something else"""
     if not isinstance(value, (str, int, float, np.integer, np.floating)):
         raise ValueError(f"{place} is not one text or number")
     return value
@@ -60,7 +60,7 @@ def is_campaign(path: Path) -> bool:
 
 
 class CampaignDocument:
-    """A campaign for a page; arguments as for :class:`~.document.Document`.
+    """A campaign for a page. The arguments are those of :class:`~.document.Document`.
 
     :raises Unreadable: the table is damaged
     """
@@ -125,7 +125,7 @@ class CampaignDocument:
 
     @property
     def kind(self) -> str:
-        """Type of the campaign in the list of runs of the page."""
+        """Type of the campaign, for the list of runs on the page."""
         return "campaign"
 
     @property
@@ -160,7 +160,7 @@ class CampaignDocument:
         ]
 
     def _text(self, outcome: Variable, key: str) -> str:
-        """Return a number of the statistics as text; an extreme value with its sample."""
+        """Return a number of the statistics as text; that of an extreme value includes the number of its sample."""
         found = self.statistics[outcome.name]
         said = text(found[key], outcome.unit, 4)
         sample = found.get(f"{key}_sample")
@@ -209,7 +209,7 @@ class CampaignDocument:
         }
 
     def _ranks(self, outcome: Variable) -> dict[str, Any]:
-        """Return the rank correlation of an outcome with each parameter, the strongest first."""
+        """Return the rank correlation of an outcome with each parameter, sorted by size with the largest first."""
         from statejump.campaign.summary import spearman  # as outputs
 
         bars = [
@@ -220,7 +220,7 @@ class CampaignDocument:
         return {"title": outcome.title, "bars": sorted(known, key=lambda bar: -abs(bar["value"]))}
 
     def _curve(self, outcome: Variable) -> dict[str, Any]:
-        """Return an outcome over the first parameter, with a line for each value of the second."""
+        """Return the curves of an outcome over the first parameter, one for each value of the second parameter."""
         first, second = self.parameters[0], self.parameters[1] if len(self.parameters) > 1 else None
         if len(self.parameters) > 1 and len(np.unique(first.values)) < len(np.unique(self.parameters[1].values)):
             first, second = self.parameters[1], self.parameters[0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Capabilities of kinds for presentation: text, figures, part of the page; see :mod:`statejump.kinds.protocol`."""
+"""Capabilities of kinds for their presentation: text, figures, page section; see :mod:`statejump.kinds.protocol`."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -48,14 +48,14 @@ class PageCharts(Protocol):
 
 @capability("event reason")
 class EventReasons(Protocol):
-    """Reasons why only one of the models has an event; "": unknown."""
+    """Reasons why only one of two models reports an event; "" if the reason is unknown."""
 
     def event_reason(self, case: Any, event: Event, model: str, runs: Mapping[str, Run]) -> str: ...
 
 
 @capability("page")
 class PagePart(Protocol):
-    """The part of the page of ``statejump report`` that only this kind has; None: no part for this result."""
+    """The section of the page of ``statejump report`` that only this kind has; None: this result has none."""
 
     def page(self, result: Result, case: Any) -> Any: ...
 

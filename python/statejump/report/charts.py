@@ -23,9 +23,9 @@ STATE_UNITS = {"m", "rad"}  # units of displacements; quantities with other unit
 
 
 def charts_of(case: Case | None, run: Run, labels: Labels) -> list[Chart]:
-    """Return the charts of a run: those of its kind, or loops of its first plain columns.
+    """Return the charts of a run: the charts of its kind, or loops of its first plain columns.
 
-    :param case: the case; None: this version cannot read the case of the file
+    :param case: the case; None: the installed version cannot read it from the file
     """
     if case is not None and has(case, PageCharts):
         found: list[Chart] = require(case, PageCharts).charts(case)
@@ -50,8 +50,8 @@ LEFT = " less its straight part"  # suffix of the name of a column
 def with_thin_loops(
     given: Sequence[Chart], columns: Mapping[str, dict[str, np.ndarray]], units_of: dict[str, str], labels: Labels
 ) -> list[Chart]:
-    """Return the charts. A chart with a thin loop is followed by one without the reversible part, a straight line
-    fitted to the first model. Its new column is added to ``columns`` and ``units_of``."""
+    """Insert a second chart after each chart of a thin loop. It shows the loop without its reversible part, a straight
+    line fitted to the first model. Its column is added to ``columns`` and ``units_of``."""
     found = []
     for chart in given:
         found.append(chart)
@@ -72,7 +72,7 @@ def with_thin_loops(
 
 
 def _shown_axis(axis: Axis, columns: Columns, unit_of: Mapping[str, str], labels: Labels) -> dict[str, Any]:
-    """Return an axis for the page: offset and factor of the values, label with unit."""
+    """Return an axis for the page: offset and factor of its values, and label with unit."""
     found = [values[axis.column] for values in columns.values() if axis.column in values]
     start = float(found[0][0]) if axis.from_start else 0.0
     size = max(float(np.nanmax(np.abs(values - start))) for values in found)
@@ -85,12 +85,12 @@ def _shown_axis(axis: Axis, columns: Columns, unit_of: Mapping[str, str], labels
 def shown(
     chart: Chart, columns: Columns, unit_of: Mapping[str, str], marks: Sequence[dict[str, Any]], labels: Labels
 ) -> dict[str, Any] | None:
-    """Return a chart for the page; None if no model has its columns.
+    """Return a chart for the page; None if no model has the columns of the chart.
 
     :param columns: columns by model and name
     :param unit_of: unit of every column
-    :param marks: events to mark: ``time_s``, ``label``, ``value``, ``role``; the value of a ``jump`` is replaced by
-        that of the quantity of the chart
+    :param marks: events to mark, with ``time_s``, ``label``, ``value``, ``role``. The value of a ``jump`` is replaced
+        by the jump of the chart's own quantity
     """
     models = [model for model, values in columns.items() if {chart.x.column, chart.y.column} <= set(values)]
     if not models:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Selection of fewer samples with a known error; the page states their number and the error."""
+"""Selection of fewer samples with a known error. The page states the number of samples and the error."""
 from __future__ import annotations
 
 import heapq
@@ -17,11 +17,11 @@ def kept_samples(
     with the largest error is selected next, until no error exceeds the tolerance.
 
     :param time_s: times in ascending order (samples)
-    :param columns: (samples, columns); only finite values count
+    :param columns: values (samples, columns); only finite values count
     :param most: largest number of samples
-    :param tolerance: allowed error, as a fraction of the range of each column
+    :param tolerance: allowed error of a column, as a fraction of its range
     :param always: samples to keep in any case
-    :returns: indices in order
+    :returns: indices of the kept samples, in ascending order
     """
     count = len(time_s)
     columns = np.where(np.isfinite(columns), columns, 0.0).reshape(count, -1)
@@ -52,8 +52,8 @@ def kept_samples(
 
 
 def errors(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) -> np.ndarray:
-    """Return the error of linear interpolation between kept samples for each column, as a fraction of its range; only
-    finite values count."""
+    """Return the error of each column by linear interpolation between kept samples, as a fraction of the column's
+    range. Only finite values count."""
     found = []
     for column in columns:
         values = np.where(np.isfinite(column), column, 0.0)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Page of one result: texts and tables, and data for charts and replay.
 
-Only this module uses both the reader of result files and the page. The data for the page's script are plain JSON,
-:func:`Document.payload`; columns are numbers, or base64 of little-endian float32 (``f``) or uint8 (``u``).
+Only this module uses both the reader of result files and the page. The data for the page's script are plain JSON, see
+:func:`Document.payload`. A column is a number, or base64 of little-endian float32 (``f``) or uint8 (``u``).
 """
 from __future__ import annotations
 
@@ -54,10 +54,10 @@ class Kept:
 class Document:
     """A result for a page.
 
-    :param result: content of the file
-    :param source: the file's name on the page
-    :param identifier: prefix of the page's anchors, unique on the page
-    :param budget_bytes: largest size of the histories on the page
+    :param result: contents of the result file
+    :param source: name of the file as the page shows it
+    :param identifier: prefix of the HTML anchors of this result, unique on the page
+    :param budget_bytes: largest size of the histories [bytes]
     """
 
     template = "run.html"
@@ -127,7 +127,7 @@ class Document:
         return "pass", f"Both models agree: all {len(rows)} compared quantities are within tolerance."
 
     def cards(self) -> list[dict[str, Any]]:
-        """Return numbers for the top of the page: state jumps of every model, then the first contact or slip."""
+        """Return numbers for the top of the page: first state jumps of all models, then the first contact or slip."""
         models = self.result.models
         names = dict.fromkeys(name for run in models.values() for name, value in run.summary.items()
                               if ("jump" in name or "at_program_end" in name) and math.isfinite(value))
@@ -156,12 +156,12 @@ class Document:
         return cards
 
     def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
-        """Return the sections of the case file with all defaults, as pairs of key and value."""
+        """Return the sections of the case with all defaults: keys and values as pairs of texts."""
         return sections_of(self._values)
 
     @property
     def sides(self) -> list[str]:
-        """Return the sources of compared values, in the order of the columns of the table."""
+        """Return the sources of the compared values, in the order of the table's columns."""
         return sides(self.result.rows or ())
 
     def comparison(self) -> list[dict[str, Any]]:
@@ -182,7 +182,7 @@ class Document:
 
     def events(self) -> tuple[list[dict[str, Any]], int]:
         """Return the rows of the table of events in order of time, and the number of omitted rows. Events of several
-        models share a row if kind and contact are equal and their times nearly so."""
+        models share a row if they have the same kind and contact, and nearly the same time."""
         near = SAME_EVENT * self._cycle_s
         rows: list[dict[str, Any]] = []
         for model, run in self.result.models.items():
@@ -214,7 +214,7 @@ class Document:
         }
 
     def _reason(self, event: Event, having: set[str]) -> str:
-        """Return the reason why only some of the models have an event, if the kind knows it."""
+        """Return the reason why only some models report an event, if the kind of case knows it."""
         case, models = self._case, self.result.models
         if case is None or having == set(models) or not has(case, EventReasons):
             return ""
@@ -223,12 +223,12 @@ class Document:
 
     @property
     def _cycle_s(self) -> float:
-        """Duration of a cycle [s]; of the whole run if the case has none."""
+        """Duration of a cycle [s]; if the case has no cycle, that of the whole run."""
         end = max((float(run.time_s[-1]) for run in self.result.models.values()), default=0.0)
         return end / self._cycles
 
     def stages(self) -> list[dict[str, Any]]:
-        """Return the stages of the first model that has any: name, meaning, begin, end."""
+        """Return the stages of the first model that has stages: name, meaning, begin and end of each."""
         for run in self.result.models.values():
             column = run.history.get("stage")
             if column is None or not column.labels:
@@ -337,7 +337,7 @@ class Document:
 
     @staticmethod
     def _readouts(shown: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        """Return the quantities shown beside the replay: those of the charts over temperature and time."""
+        """Return the quantities to show beside the replay: the quantities of the charts over temperature and time."""
         axes = {chart["y"]["column"]: chart["y"] for chart in shown
                 if not chart["equal"] and not chart["y"]["column"].endswith(charts.LEFT)}
         return [
@@ -363,7 +363,7 @@ def of_file(path: Path, source: str, identifier: str, budget_bytes: float) -> Do
 
 
 def _case_of(result: Result) -> Case | None:
-    """Return the case of a file; None: this version cannot read it, and the page omits its description."""
+    """Return the case in a file; None if this version cannot read it. The page then omits its description."""
     try:
         return result.definition
     except StatejumpError:
@@ -371,7 +371,7 @@ def _case_of(result: Result) -> Case | None:
 
 
 def _encoded(values: np.ndarray) -> Any:
-    """Return a column for the page; a single number if it is constant."""
+    """Return a column in the page's encoding. A constant column becomes a single number."""
     if values.dtype == np.uint8:
         return {"u": base64.b64encode(values.tobytes()).decode("ascii")}
     values = np.nan_to_num(values.astype("<f4"))

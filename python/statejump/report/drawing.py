@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene of a result file for the replay: moving points, parts on them, forces.
+"""The scene of a result file for the replay on the page: moving points, parts on these points, forces.
 
 The position of a part that rests on or in another part is stored *relative* to that part, as a difference of columns in
 full precision. Absolute positions in single precision are too coarse, because the replay magnifies a clearance of 0.1
@@ -33,7 +33,8 @@ AXES = "xyz"
 
 
 def round_down(value: float) -> float:
-    """Return the largest of 1, 2, 5, 10, 20, ... that does not exceed the value, at least 1; infinity for infinity."""
+    """Return the largest of 1, 2, 5, 10, 20, ... that does not exceed the value, at least 1. Infinity stays
+    infinity."""
     if not value > 1:
         return 1.0
     if math.isinf(value):
@@ -45,8 +46,8 @@ def round_down(value: float) -> float:
 class Drawing:
     """Collects points, parts and forces, and the columns that move them, for every model of a result.
 
-    ``scene`` is plain JSON data with names of columns instead of numbers that change. ``columns`` has these columns by
-    model and name.
+    ``scene`` is plain JSON data in which names of columns replace the numbers that change. ``columns`` contains these
+    columns by model and name.
     """
 
     def __init__(self, result: Result, labels: Labels) -> None:
@@ -94,7 +95,7 @@ class Drawing:
         return self._points[json.dumps(part["centre"], sort_keys=True)]
 
     def _pairs(self) -> dict[int, int]:
-        """Return, by the point of a part that rests on another part, the point of the other part."""
+        """Return a dict: for the point of each part that rests on another part, the point of that other part."""
         pairs: dict[int, int] = {}
         for contact in self.result.scene["contacts"]:
             on, other = (self._parts[contact[key]] for key in ("on", "from"))
@@ -133,7 +134,7 @@ class Drawing:
         return None
 
     def _size(self, name: str, part: dict[str, Any], key: str, other: dict[str, Any], other_key: str) -> Any:
-        """Return the difference of two dimensions of parts: a number, or a column if they expand."""
+        """Return a dimension of one part minus one of another: a number, or a column if they expand."""
         if not part.get("thermal_expansion_per_K") and not other.get("thermal_expansion_per_K"):
             return part[key] - other[other_key]
         for model in self.result.models:
@@ -199,8 +200,8 @@ class Drawing:
         return {**drawn, "axis": part["axis"]} if "axis" in part else drawn
 
     def _arm(self, at: Any, centre: Any) -> list[str]:
-        """Return the columns of the vector from the centre of a part to the position of a force, common to normal and
-        tangential force."""
+        """Return the columns of the vector from the centre of a part to the point where a force acts. Normal and
+        tangential force share these columns."""
         key = json.dumps([at, centre], sort_keys=True)
         if key not in self._arms:
             self._arms[key] = self._vector(
@@ -226,7 +227,7 @@ class Drawing:
         return [force for force in drawn if self._largest(force) > 0]
 
     def _axial(self, place: int, link: dict[str, Any], axial: Any) -> dict[str, Any]:
-        """Return the force of a link on the item at its second end, along the drawn link; compression pushes
+        """Return the force of a link on the item at its second end, along the drawn link. Compression points
         outward."""
         first, second = (self._points[json.dumps(end, sort_keys=True)] for end in link["ends"])
         return {
@@ -243,7 +244,8 @@ class Drawing:
             )
 
     def _measure(self) -> None:
-        """Compute the size of the scene at the start, the largest force, and the default magnification."""
+        """Compute the size of the scene at the start, the largest force, and the default magnification of the
+        replay."""
         run = next(iter(self.result.models.values()))
         corners = []
         for part in self.result.scene["parts"]:
@@ -281,7 +283,7 @@ class Drawing:
             raise Unreadable(code="drawing_not_finite", case=self.result.name)
 
     def _largest_way(self) -> float:
-        """Return the largest distance [m] of a point from its start; relative points are omitted."""
+        """Return the largest distance [m] of any point from its start. Points relative to other points are omitted."""
         return max(
             (
                 float(np.max(np.sqrt(sum(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Energy account of a run: supplied, stored and dissipated energy, and the residue."""
+"""Energy account of a run: supplied, stored and dissipated energy, and the residue between them."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class Account:
 
 
 def account(run: Run, labels: Labels) -> Account:
-    """Return the account of a run from its energy columns, as changes since the first sample."""
+    """Return the energy account of a run: changes of its energy columns since the first sample."""
     zero = np.zeros(len(run.time_s))
     sums = {role: zero.copy() for role in ROLES.values()}
     friction = zero.copy()

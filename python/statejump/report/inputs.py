@@ -7,7 +7,7 @@ from typing import Any
 
 
 def sections_of(values: dict[str, Any]) -> list[tuple[str, list[tuple[str, str]]]]:
-    """Return the sections of a case with all defaults, as pairs of key and value; lists of items are summarised."""
+    """Return the sections of a case with all defaults, as pairs of key and value. Lists of items are summarised."""
     sections = []
     for section, keys in values.items():
         if isinstance(keys, list) and keys and all(isinstance(item, dict) for item in keys):
@@ -33,7 +33,7 @@ def _shown(value: Any) -> str:
 
 
 def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
-    """Summarise the items of a list, such as nodes or links, in a few rows with the ranges of their numbers."""
+    """Summarise items of a list, such as nodes or links, in a few rows: their number and ranges of their values."""
     rows = [("", f"{len(items)} {'entry' if len(items) == 1 else 'entries'}")]
     for key in items[0]:
         values = [item[key] for item in items if item.get(key) is not None]
@@ -44,7 +44,7 @@ def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
 
 
 def _number(value: float) -> str:
-    """Format a number with six digits; an integer may exceed the range of floats."""
+    """Return a number as text with six digits. An integer may be larger than any float."""
     try:
         return f"{value:g}"
     except OverflowError:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Labels for the keys of result files. This module has labels common to all kinds; each kind has those of its columns,
-contacts and links (``LABELS``)."""
+"""Labels for the keys of result files. This module has the labels common to all kinds; each kind has labels for its
+columns, contacts and links (``LABELS``)."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -34,16 +34,16 @@ STAGE = "stage "
 
 
 def inside(words: str) -> str:
-    """Return a name with the capitals that it has inside a sentence."""
+    """Return a label as it is written inside a sentence: with a small first letter, except for names."""
     kept = words[:2].isupper() or words.startswith(tuple(NAMES.values()))
     return words if kept else words[:1].lower() + words[1:]
 
 
 class Labels:
-    """Labels for the keys of one kind.
+    """Labels for the keys of result files of one kind of case.
 
-    :param own: labels of the kind by key, with or without the unit
-    :param given: whether parts of such cases have names given by users
+    :param own: labels of the kind by key; a key may lack its unit
+    :param given: whether users name the parts in cases of this kind
     """
 
     def __init__(self, own: Mapping[str, str] | None = None, given: bool = False) -> None:
@@ -51,7 +51,7 @@ class Labels:
         self._given = given
 
     def named(self, name: str, in_sentence: bool = False) -> str:
-        """Return the name of a part, link or contact; a name given by a user is not changed."""
+        """Return the label of a part, link or contact. A name that a user chose is not changed."""
         known = self._own.get(name)
         if known is None and self._given:
             return name
@@ -59,7 +59,7 @@ class Labels:
         return found.lower() if in_sentence else found
 
     def plain(self, name: str) -> str:
-        """Return a key as words, with a capital and without its unit."""
+        """Return a key as words, with a capital letter and without its unit."""
         key = split_unit(name)[0]
         known = self._own.get(name) or self._own.get(key)
         if known is not None:
@@ -68,7 +68,7 @@ class Labels:
         return words[:1].upper() + words[1:]
 
     def parameter(self, path: str) -> str:
-        """Return a key of a case file, or a name, as words: ``link.young_modulus_Pa``, ``revolute.*.axis``."""
+        """Return a key of a case file, or its path, as words: ``link.young_modulus_Pa``, ``revolute.*.axis``."""
         section, _, rest = path.partition(".")
         item, _, key = rest.rpartition(".")
         if not rest:
@@ -88,7 +88,7 @@ class Labels:
 
 
 def of_kind(name: str) -> Labels:
-    """Return the labels of a kind; for an unknown kind, the labels common to all kinds."""
+    """Return the labels of a kind of case; for an unknown kind, the labels common to all kinds."""
     try:
         found = kind(name)
         return Labels(found.LABELS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
@@ -97,7 +97,7 @@ def of_kind(name: str) -> Labels:
 
 
 def described(case: Case) -> list[str]:
-    """Return a case in sentences: the description by its kind, then its temperature program."""
+    """Describe a case in sentences: first the description by its kind, then its temperature program."""
     sentences: list[str] = require(case, CaseText).describe(case) if has(case, CaseText) else []
     return [*sentences, _temperature(case)]
 

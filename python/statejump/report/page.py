@@ -34,13 +34,13 @@ def _asset(name: str) -> str:
 
 
 def embedded_json(data: Any) -> Markup:
-    """Return data as JSON that is safe in a script element: no text in it can end the element."""
+    """Return data as JSON that is safe inside a script element, because no text in it can end the element."""
     dumped = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return Markup(dumped.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e"))
 
 
 def _not_finite(data: Any, place: str = "") -> Iterator[str]:
-    """Yield the paths of numbers that are not finite in data for the page."""
+    """Yield the paths of those numbers in the page's data that are infinite or NaN."""
     if isinstance(data, Mapping):
         for key, value in data.items():
             yield from _not_finite(value, f"{place}.{key}" if place else str(key))
@@ -52,7 +52,7 @@ def _not_finite(data: Any, place: str = "") -> Iterator[str]:
 
 
 def _payload(document: Document | CampaignDocument) -> dict[str, Any]:
-    """Return the data of a document. :raises Unreadable: one of its numbers is not finite"""
+    """Return the page's data of a document. :raises Unreadable: a number in the data is not finite"""
     data = document.payload()
     wrong = next(_not_finite(data), None)
     if wrong is not None:
@@ -61,7 +61,7 @@ def _payload(document: Document | CampaignDocument) -> dict[str, Any]:
 
 
 def embedded_code(source: str, element: str) -> Markup:
-    """Return a script or style that is safe in its element; ValueError if it would end the element."""
+    """Return a script or style that is safe in its HTML element. :raises ValueError: it would end the element"""
     if f"</{element}" in source.lower():
         raise ValueError(f"the {element} contains </{element}")
     return Markup(source)
@@ -69,7 +69,7 @@ def embedded_code(source: str, element: str) -> Markup:
 
 @cache
 def _environment(folders: tuple[Path, ...]) -> Environment:
-    """Return the templates of the page and of these folders. They are cached, because they take long to compile."""
+    """Return the template environment of the page and of given folders, cached because templates compile slowly."""
     environment = Environment(
         loader=ChoiceLoader([FileSystemLoader(folder) for folder in (HERE, *folders)]),
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,

@@ -19,10 +19,10 @@ from statejump.schema.fields import attached_to_json
 
 
 class UnsolvedDocument:
-    """A case for a page; arguments as for :class:`~.document.Document`.
+    """A case for a page. The other arguments are those of :class:`~.document.Document`.
 
-    :param case: a case of a kind that can be drawn
-    :raises NotAllowed: the kind cannot be drawn
+    :param case: a case of a kind for which a drawing exists
+    :raises NotAllowed: the kind of the case cannot be drawn
     """
 
     template = "unsolved.html"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks types, axes and attributes of an HDF5 file against the layout, before its contents are read."""
+"""Checks types, axes and attributes of an HDF5 file against the layout of result files, before data are read."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -17,7 +17,7 @@ OF_ITEMS = ("items", "links", "contacts")
 
 
 def check(file: h5py.File, path: Path) -> None:
-    """Raise Unreadable unless the file is a result file of a known layout, and its contents match this layout."""
+    """Raise Unreadable unless a file is a result file of a known layout, and its contents match the layout."""
     form = file.attrs.get("format")
     if not isinstance(form, str) or form != FORMAT:
         raise Unreadable(code="result_other_format", file=path, wanted=FORMAT)
@@ -69,7 +69,7 @@ def _check_missing(found: dict[str, Any], models: list[str], path: Path) -> None
 
 
 def _type(item: Any) -> str:
-    """Return the layout's name for the type of an object or of the value of an attribute."""
+    """Return the layout's name for the type of an HDF5 object or of an attribute's value."""
     if isinstance(item, h5py.Group):
         return "group"
     if isinstance(item, str):
@@ -82,7 +82,7 @@ def _type(item: Any) -> str:
 
 
 def _check_form(place: str, item: Any, form: Form, path: Path) -> list[tuple[str, int]]:
-    """Raise Unreadable for a type or shape outside the layout; return the lengths of the axes by name."""
+    """Raise Unreadable if the layout does not allow a type or a shape; return the lengths of the axes by name."""
     found = _type(item)
     if found not in form.types:
         raise _damaged(path, f"{place} is {found}, must be {' or '.join(form.types)}")
@@ -98,7 +98,7 @@ def _check_form(place: str, item: Any, form: Form, path: Path) -> list[tuple[str
 
 
 def _check_column(place: str, item: h5py.Dataset, names: h5py.Group, path: Path) -> None:
-    """Raise Unreadable if the second axis of a column does not match the list of names that it refers to."""
+    """Raise Unreadable if the length of a column's second axis differs from that of its list of names."""
     items = item.attrs.get("items")
     if not place.startswith("/models/"):
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contents of a result file in memory, for writing, reading and export."""
+"""The contents of a result file in memory, from which it is written, read and exported."""
 from __future__ import annotations
 
 import json
@@ -28,8 +28,8 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Answers:
-    """Answers to design questions on a truss. ``tables`` has the rows of the CSV files with the same names. A value is
-    a text, an integer, a number or None."""
+    """Answers to design questions on a truss. ``tables`` has the rows of the CSV files of that name; a cell is a text,
+    an integer, a number or None."""
 
     output: str  # the output whose jump is attributed to joints: node:NAME, rms, tilt
     text: str  # the same in a sentence
@@ -48,14 +48,14 @@ class Answers:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A triangle mesh of a part of type ``mesh``, in the frame of the part."""
+    """A triangle mesh of a part of type ``mesh``, in the part's own coordinate frame."""
 
     vertices_m: np.ndarray  # (vertices, 3)
     triangles: np.ndarray  # (triangles, 3), indices into vertices_m
 
 
 def _given(values: Any) -> Any:
-    """Return parsed JSON without null and empty lists, which a case file cannot have."""
+    """Return parsed JSON without null values and empty lists, because a case file cannot contain them."""
     if isinstance(values, dict):
         return {key: _given(value) for key, value in values.items() if value is not None and value != []}
     return [_given(value) for value in values] if isinstance(values, list) else values
@@ -63,7 +63,7 @@ def _given(values: Any) -> Any:
 
 @dataclass(frozen=True)
 class Result:
-    """A whole result file. ``models`` has the keys ``reduced``, ``dem`` or both."""
+    """The contents of a whole result file. ``models`` has the runs by model: ``reduced``, ``dem`` or both."""
 
     command: str
     complete: bool
@@ -108,5 +108,5 @@ class Result:
 
     @property
     def passed(self) -> bool | None:
-        """Whether all compared quantities are within tolerance; None: there is no comparison."""
+        """Whether all compared quantities are within their tolerances; None if there is no comparison."""
         return None if self.rows is None else all(row.passed for row in self.rows)

@@ -26,8 +26,8 @@ SAME_TIME = 1e-9  # fraction of the duration: rounding of the time of the last s
 
 @dataclass(frozen=True)
 class ColumnDifference:
-    """Largest difference of a column over time and its items. ``name``: its path below the model. ``range``: largest
-    minus smallest value of the first run. ``time_s``: time of the largest difference."""
+    """Largest difference of a column over time and over its items. ``name`` is the column's path below the model,
+    ``range`` its largest minus smallest value in the first run, ``time_s`` the time of the largest difference."""
 
     name: str
     unit: str
@@ -38,7 +38,7 @@ class ColumnDifference:
 
 @dataclass(frozen=True)
 class EventDifference:
-    """Events of one kind: their number in each run, and ΔT [K] of the first one (None: no event)."""
+    """Events of one kind in two runs: their number in each run, and ΔT [K] of the first one (None: no event)."""
 
     kind: str
     counts: tuple[int, int]
@@ -47,10 +47,10 @@ class EventDifference:
 
 @dataclass(frozen=True)
 class RunDifference:
-    """Comparison of two runs. ``rows``: quantities with tolerances; None if a run is incomplete.
+    """Comparison of two runs. ``rows`` are the quantities with tolerances; None if a run is incomplete.
 
-    :param lacking: columns that only one of the runs has
-    :param not_finite: columns with a value that is finite in one run only
+    :param lacking: columns that only one of both runs has
+    :param not_finite: columns with a value that is finite in only one run
     """
 
     names: tuple[str, str]
@@ -63,8 +63,8 @@ class RunDifference:
 
     @property
     def missed(self) -> list[str]:
-        """Faults: rows beyond their tolerance, columns of one file only (if both runs are of one model), and columns
-        that are finite in one run only."""
+        """Faults of the comparison: rows beyond their tolerance, columns that only one file has (if both runs are of
+        one model), and columns that are finite in only one run."""
         beyond = [row.name for row in self.rows or () if not row.passed]
         alone = [f"{name} (in one file only)" for name in self.lacking] if self.names[0] == self.names[1] else []
         return beyond + alone + [f"{name} (not finite)" for name in self.not_finite]
@@ -79,8 +79,8 @@ def _entries(values: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def case_differences(first: Result, second: Result) -> tuple[list[str], list[str]]:
-    """Return the differences of two cases, in their structure and in their numerical settings, as ``section.key = first
-    and second``."""
+    """Return the differences between two cases as ``section.key = first and second``: first those of the structure,
+    then those of numerical settings."""
     entries = [dict(_entries(json.loads(result.case_json))) for result in (first, second)]
     physical: list[str] = []
     numerical: list[str] = []
@@ -106,7 +106,7 @@ def check_comparable(first: Result, second: Result) -> None:
 
 
 def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
-    """Return the compared pairs of models: the common models, or the only model of each file."""
+    """Return the pairs of models to compare: the models that both files have, or else the first model of each file."""
     common = [(model, model) for model in first.models if model in second.models]
     if common:
         return common
@@ -123,7 +123,7 @@ def _lacking(first: Run, second: Run) -> list[str]:
 
 
 def _not_finite(first: Run, second: Run) -> list[str]:
-    """Return the columns with values that are finite in one run only, or whose NaN and infinity differ."""
+    """Return the columns with values that are finite in only one run, or whose NaN and infinity differ."""
     found = []
     for group in COMPARED:
         for name, column in getattr(first, group).items():
@@ -176,12 +176,12 @@ def _summary(first: Run, second: Run) -> list[tuple[str, str, float, float]]:
 
 
 def difference(first: Result, second: Result) -> list[RunDifference]:
-    """Compare two result files.
+    """Compare the runs in two result files.
 
-    The second run is interpolated linearly at the times of the first. If a file is incomplete, the common time is
-    compared without a verdict.
+    The second run is interpolated linearly at the times of the first. If a run is incomplete, only the common time is
+    compared, without a verdict.
 
-    :raises StatejumpError: they belong to different cases or have different durations
+    :raises StatejumpError: the files belong to different cases, or the cases have different durations
     """
     check_comparable(first, second)
     complete = first.complete and second.complete

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Events of a run, from the states of its contacts at consecutive samples."""
+"""Events of a run, found from the states of its contacts at successive samples."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -10,9 +10,9 @@ from statejump.core.run import AT_STOP, SEPARATED, SLIP, Event
 
 
 def kind_of(before: int, after: int, slipped: bool) -> str:
-    """Return the kind of event between two states; names as in the reduced spring-slider model.
+    """Return the kind of event between two states of a contact. Names are those of the reduced spring-slider model.
 
-    :param slipped: whether the contact has slipped before
+    :param slipped: whether the contact slipped at an earlier time
     """
     if after == AT_STOP:
         return "stop_reached"
@@ -30,9 +30,9 @@ def kind_of(before: int, after: int, slipped: bool) -> str:
 def from_states(
     time_s: np.ndarray, temperature_change_K: np.ndarray, states: np.ndarray, contacts: Sequence[str]
 ) -> list[Event]:
-    """Return the events of contacts in order of time, each midway between two samples.
+    """Return the events of contacts in order of time. The time of an event is the mean of two samples.
 
-    :param states: (samples, contacts), see ``CONTACT_STATES``
+    :param states: states (samples, contacts), see ``CONTACT_STATES``
     """
     found: list[Event] = []
     for place, contact in enumerate(contacts):

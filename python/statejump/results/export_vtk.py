@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK files of a result, made from its scene; one series per model and type of content, with the true times.
+"""VTK files of a result, made from its scene. Each model has one series per type of content, with the true times.
 
 - ``<model>_links``, .vtu: links and springs as lines with axial force, thermal strain, temperature change
 - ``<model>_parts``, .vtp: journals, bearings, blocks, slots, frames, meshes
@@ -65,7 +65,7 @@ class _Lines:
 
 @dataclass(frozen=True)
 class _Shape:
-    """A drawn part: polylines or triangles in its own frame, and their motion."""
+    """A part to be drawn: polylines or triangles in its own coordinate frame, and the motion of this frame."""
 
     part: dict[str, Any]
     lines: list[np.ndarray]
@@ -138,7 +138,7 @@ class _Parts:
 
 
 class _Vertices:
-    """Points with arrays. Their number is constant over time, also while no force acts."""
+    """Points with arrays. The number of points is constant over time, even while some forces are zero."""
 
     suffix = ".vtp"
 
@@ -184,7 +184,7 @@ def _forces(result: Result, run: Run) -> _Vertices | None:
 
 
 def sorts(result: Result, model: str) -> dict[str, Any]:
-    """Return the drawings of a model: the object that makes the frames, by the name of its series."""
+    """Return the drawings of a model: for the name of each series, the object that makes its frames."""
     run = result.models[model]
     found = {
         "links": _Lines(result, run, model), "parts": _Parts(result, run, model),
@@ -196,7 +196,7 @@ def sorts(result: Result, model: str) -> dict[str, Any]:
 def write_all(
     result: Result, folder: Path, wanted_frames: int, progress: Callable[[float], None] = lambda fraction: None
 ) -> list[Path]:
-    """Write the files of all models and return the paths of the series.
+    """Write the VTK files of all models, and return the paths of their series.
 
     :param wanted_frames: number of samples to write, see :func:`.vtk_data.frames_of`
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A workbook of a result for Excel and LibreOffice: the tables of the CSV export as sheets. Cells are numbers with 16
+"""A workbook of a result for Excel and LibreOffice: each table of the CSV export is a sheet. Cells are numbers with 16
 digits, independent of the local decimal mark."""
 from __future__ import annotations
 

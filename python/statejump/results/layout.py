@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Layout of a result file, as data. Tests check the writer against it, the reader checks files with it, and the table
-in docs/reference/result_file.md is generated from it."""
+"""Layout of a result file, as data. Tests check the writer against the layout, and the reader checks files with it. The
+table in docs/reference/result_file.md is generated from it."""
 from __future__ import annotations
 
 import re
@@ -15,11 +15,11 @@ MODELS = ("reduced", "dem")
 
 @dataclass(frozen=True)
 class Form:
-    """Allowed types and shapes of an entry.
+    """Types and shapes that an entry of a result file may have.
 
     :param types: ``group``, ``text``, ``bool``, ``int64``, ``uint8`` (with labels) or ``float64``
-    :param shapes: names of the axes of each allowed shape; the name of an axis of fixed length is this length
-    :param words: name of the types in the documentation
+    :param shapes: for each allowed shape the names of the axes; if an axis has a fixed length, its name is this length
+    :param words: name of the types for the documentation
     """
 
     types: tuple[str, ...]
@@ -38,7 +38,7 @@ def _array(types: str, *axes: str) -> Form:
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of the file. In ``path``, ``{model}`` is a model and ``{name}`` any name; ``@`` marks an attribute."""
+    """An entry of a result file. In ``path``, ``{model}`` is a model, ``{name}`` any name; ``@`` marks an attribute."""
 
     path: str
     form: Form

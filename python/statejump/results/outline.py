@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outlines of the parts of a scene in their own frames, for viewers that draw lines."""
+"""Outlines of the parts of a scene, in their own frames, for viewers that can only draw lines."""
 from __future__ import annotations
 
 from typing import Any
@@ -30,8 +30,8 @@ def _frame(axis: list[float]) -> np.ndarray:
 
 
 def outlines(part: dict[str, Any]) -> list[np.ndarray]:
-    """Return polylines (points, 3) [m] of a part at ΔT = 0, about its centre and across its axis (default z). The list
-    is empty for links, springs, frames and meshes, whose points are in the scene or in the file."""
+    """Return polylines (points, 3) [m] of a part at ΔT = 0, relative to its centre and across its axis (default z). The
+    list is empty for links, springs, frames and meshes, because their points are in the scene or in the file."""
     flat = _flat_outlines(part)
     return [line @ _frame(part["axis"]).T for line in flat] if "axis" in part else flat
 
@@ -52,14 +52,14 @@ def _flat_outlines(part: dict[str, Any]) -> list[np.ndarray]:
 
 
 def placed(points: np.ndarray, centre: np.ndarray, angle_rad: float, growth: float) -> np.ndarray:
-    """Return points of a part's own frame in space: expanded by ``growth``, rotated about z, and moved."""
+    """Return the positions in space of points in a part's frame: scaled by ``growth``, rotated about z, and moved."""
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     return centre + growth * points @ turn.T
 
 
 def growth(part: dict[str, Any], result: Result, model: str) -> np.ndarray:
-    """Return 1 + thermal strain of a part over the samples: factor of its radii and dimensions."""
+    """Return 1 + thermal strain of a part at every sample, the factor of its radii and other dimensions."""
     run = result.models[model]
     change = resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, result.names)
     return 1 + part.get("thermal_expansion_per_K", 0.0) * change

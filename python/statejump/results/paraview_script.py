@@ -40,7 +40,7 @@ def _largest_force_N(result: Result) -> float:
 
 
 def _range_N(result: Result) -> tuple[float, float]:
-    """Return a range of axial forces [N], symmetric about 0, that covers all links at all times."""
+    """Return a range of axial forces [N] that is symmetric about 0 and covers all links at all times."""
     largest = [
         np.nanmax(np.abs(run.links["axial_force_N"].values), initial=0.0)
         for run in result.models.values() if "axial_force_N" in run.links

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reader of result files; the error for a faulty file is one sentence."""
+"""Reader of result files. The error for a faulty file is one sentence."""
 from __future__ import annotations
 
 import json
@@ -24,14 +24,14 @@ from statejump.results.scene_check import problems
 
 
 def is_result_file(path: Path) -> bool:
-    """Return whether a path is a result file, by its content or its name."""
+    """Return whether a path names a result file, which its content or its name shows."""
     return path.suffix in (SUFFIX, ".hdf5") or is_ours(path)
 
 
 def read(path: str | Path) -> Result:
     """Return the content of a result file (HDF5): runs by model, comparison, case, scene and provenance.
 
-    :raises StatejumpError: the file does not exist, is no result file, has a newer layout, or is damaged
+    :raises StatejumpError: the file does not exist, is not a result file, has a newer layout, or is damaged
     """
     path = Path(path)
     try:
@@ -91,7 +91,7 @@ def _members(group: h5py.Group) -> Histories:
 
 
 def _parsed(place: str, text: str) -> dict[str, Any]:
-    """Return the object of a JSON text. :raises ValueError: it is not an object"""
+    """Return the JSON object in a text. :raises ValueError: the text is not a JSON object"""
     found = json.loads(text)
     if not isinstance(found, dict):
         raise ValueError(f"{place} is no object of JSON")
@@ -182,7 +182,7 @@ def _answers(group: h5py.Group, names: Mapping[str, list[str]]) -> Answers:
 
 
 def _rows(name: str, group: h5py.Group) -> list[dict[str, Any]]:
-    """Return the rows of a table, its columns in the order of the CSV file."""
+    """Return the rows of a table. The order of columns is that of the CSV file."""
     order = TABLES[name][1] if name in TABLES else ()
     missing = [key for key in order if key not in group] if len(group) else []
     if missing:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Output of a command: the result file of its runs, and CSV files made from it."""
+"""Output of a command: the result file of its runs, and CSV files with the same data."""
 from __future__ import annotations
 
 import json
@@ -34,10 +34,10 @@ def result_of(
     command: str, case: Case, runs: Mapping[str, Run], comparison: Comparison | None = None,
     answers: Answers | None = None,
 ) -> Result:
-    """Return runs of a case as the contents of a result file.
+    """Return the runs of a case as the contents of a result file.
 
     :param command: ``reduced``, ``dem``, ``compare`` or ``truss answers``
-    :param runs: by model
+    :param runs: runs by model
     """
     return Result(
         command=command,
@@ -63,9 +63,9 @@ def result_of(
 def save_as(
     path: Path, command: str, case: Case, runs: Mapping[str, Run], comparison: Comparison | None = None
 ) -> Path:
-    """Write the result file of runs under a name; return its path.
+    """Write the result file of runs under a given name; return its path.
 
-    :raises NotAllowed: the name ends with another suffix
+    :raises NotAllowed: the name has the suffix of another format
     """
     check_suffix("path", path, SUFFIX)
     path = path if path.suffix else path.with_suffix(SUFFIX)
@@ -77,11 +77,11 @@ def save(
     command: str, case: Case, runs: Mapping[str, Run], folder: Path, comparison: Comparison | None = None,
     answers: Answers | None = None,
 ) -> Path:
-    """Write the result file of runs and the CSV files of their histories, or of the answers; return its path.
+    """Write the result file of runs, and CSV files of their histories or of the answers; return its path.
 
-    Incomplete runs get other names, so that they do not replace complete ones.
+    Files of incomplete runs get other names, so that they do not replace files of complete runs.
 
-    :param folder: results folder, exists
+    :param folder: an existing results folder
     """
     result = result_of(command, case, runs, comparison, answers)
     mark = "" if result.complete else ".interrupted"
@@ -97,9 +97,9 @@ def save(
 
 
 def provenance(case: Case, dem: Run | None) -> dict[str, Any]:
-    """Return the attributes of ``/provenance``.
+    """Return the attributes of the group ``/provenance``.
 
-    :param dem: the DEM run; None without one
+    :param dem: the DEM run; None: there is no DEM run
     """
     found: dict[str, Any] = {
         "statejump_version": __version__,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generic description of a drawing: parts and forces, moved by the columns of a run.
+"""Description of a drawing for any kind of case: parts and forces, moved by the columns of a run.
 
-A description is plain JSON data, one for both models. A *value* is a number or a reference::
+A description is plain JSON data, the same for both models. A *value* is a number or a reference::
 
     {"data": "history/displacement_m"}                      one value per sample
     {"data": "links/axial_force_N", "item": "bar"}          of the column's item with that name
@@ -54,10 +54,10 @@ def ref(data: str, item: str = "", scale: float = 1.0, offset: float = 0.0) -> d
 
 
 def link(name: str, ends: list[Point], section: Any) -> dict[str, Any]:
-    """Return the part of a link whose columns are below ``links``.
+    """Return the part for a link whose columns are in the group ``links``.
 
-    :param section: has ``cross_section_area_m2``, ``stress_free_length_m``, ``young_modulus_Pa``,
-        ``thermal_expansion_per_K``
+    :param section: object with ``cross_section_area_m2``, ``stress_free_length_m``, ``young_modulus_Pa`` and
+        ``thermal_expansion_per_K`` of the link
     """
     return {
         "name": name, "type": "link", "ends": ends, "width_m": section.cross_section_area_m2**0.5,
@@ -69,7 +69,7 @@ def link(name: str, ends: list[Point], section: Any) -> dict[str, Any]:
 
 
 def contact_forces(contact: str, on: str, other: str) -> list[dict[str, Any]]:
-    """Return the normal and the tangential force of a contact, from its columns below ``contacts``."""
+    """Return the normal and the tangential force of a contact, as references to its columns in ``contacts``."""
     return [
         {
             "name": f"{kind} force at {contact} on {on}", "kind": kind, "on": on, "from": other, "contact": contact,
@@ -84,11 +84,11 @@ def description(
     parts: list[dict[str, Any]], contacts: list[tuple[str, str, str]], smallest_clearance_m: float,
     forces: Sequence[dict[str, Any]] = (),
 ) -> dict[str, Any]:
-    """Return a complete description.
+    """Return the complete description of a scene.
 
-    :param contacts: name, part on which the forces act, other part
+    :param contacts: of each contact name, part on which its forces act, and other part
     :param smallest_clearance_m: smallest clearance [m], which a viewer may magnify; 0: none
-    :param forces: further forces
+    :param forces: forces besides those of links and contacts
     """
     return {
         "plane": "xy",
@@ -115,7 +115,7 @@ def _item(column: Column, value: dict[str, Any], names: Mapping[str, list[str]])
 
 
 def resolve(value: Value, run: Run, names: Mapping[str, list[str]]) -> np.ndarray:
-    """Return a value or a reference over the samples: (samples) or (samples, 3).
+    """Return the values of a number or a reference over the samples: (samples) or (samples, 3).
 
     :raises StatejumpError: the run has no such column or item
     """

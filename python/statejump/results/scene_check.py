@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks the description of a scene in a file against :mod:`.scene`. Viewers rely on it."""
+"""Checks a scene in a file against the form that :mod:`.scene` describes, on which viewers rely."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
@@ -16,7 +16,7 @@ Problems = Iterator[str]
 
 
 def problems(result: Result) -> list[str]:
-    """Return the faults in the description of a result, one sentence each."""
+    """Return the faults in the scene of a result, one sentence each."""
     return list(_Check(result.models, result.names, [*result.meshes]).scene(result.scene))
 
 
@@ -135,7 +135,7 @@ class _Check:
             yield f"{repr(value)} is not a mesh of the file"
 
     def _reference(self, value: dict[str, Any], axes: int) -> Problems:
-        """Check that every model has the referenced column, with this number of axes after its item is selected."""
+        """Check that every model has the referenced column, with a given number of axes after the item is selected."""
         for model, run in self.models.items():
             try:
                 column = run.column(value["data"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of VTK files: points, cells, named arrays, a file, a series of files with true times."""
+"""Building blocks of VTK files: points, cells, named arrays, a file, a series of files with the true times."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -17,14 +17,14 @@ from statejump.core.tables import write_json
 
 
 def frames_of(samples: int, wanted: int) -> np.ndarray:
-    """Return the samples to write: all if ``wanted`` is 0, else evenly spaced ones including first and last."""
+    """Return the samples to write: all if ``wanted`` is 0, else evenly spaced ones with the first and the last."""
     if wanted == 0 or wanted >= samples:
         return np.arange(samples)
     return np.unique(np.round(np.linspace(0, samples - 1, max(wanted, 2))).astype(int))
 
 
 def file_time(time_s: float) -> float:
-    """Return a time [s] rounded for files, because two models may round the same instant differently."""
+    """Return a time [s] rounded for VTK files, because two models may round the same instant differently."""
     return float(f"{time_s:.9g}")
 
 
@@ -37,7 +37,7 @@ def points(values: np.ndarray) -> vtkPoints:
 
 
 def cells(lengths: list[int], connectivity: np.ndarray) -> vtkCellArray:
-    """Return cells with equal numbers of points; ``connectivity`` holds their indices, one cell after another."""
+    """Return cells with equal numbers of points; ``connectivity`` has the points' indices, cell after cell."""
     made = vtkCellArray()
     offsets = np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(lengths, dtype=np.int64)))
     made.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True),
@@ -58,7 +58,7 @@ def add_array(field: vtkFieldData, name: str, values: Any) -> None:
 
 
 def write(data: vtkDataObject, path: Path, time_s: float | None = None) -> None:
-    """Write a .vtu or .vtp file; the time becomes the field array ``time_s``.
+    """Write a .vtu or .vtp file. The time is stored as the field array ``time_s``.
 
     :raises NotWritten: VTK cannot write the file
     """
@@ -73,6 +73,6 @@ def write(data: vtkDataObject, path: Path, time_s: float | None = None) -> None:
 
 
 def write_series(path: Path, files: list[tuple[str, float]]) -> None:
-    """Write the ``.series`` file that ParaView opens: names of files and their times [s]."""
+    """Write the ``.series`` file that ParaView opens. It lists the names of files and their times [s]."""
     entries = [{"name": name, "time": time_s} for name, time_s in files]
     write_json(path, {"file-series-version": "1.0", "files": entries}, indent=1)

@@ -21,7 +21,7 @@ COMPRESSED_FROM = 4096  # bytes; for smaller data sets the overhead of chunks ex
 
 
 def write(result: Result, path: Path) -> None:
-    """Write the file, with all entries in the order of their names. :raises NotWritten: it cannot be written"""
+    """Write the result file, with all entries in the order of their names. :raises NotWritten: it cannot be written"""
     with made(path) as file:
         file.attrs["format"] = FORMAT
         file.attrs["layout_version"] = VERSION

@@ -30,7 +30,7 @@ Names = Sequence[str] | Callable[[], Sequence[str]]
 
 
 def definition(model: type[SectionType]) -> type[SectionType]:
-    """Make a class of sections: immutable, with keyword arguments, compared by value."""
+    """Class decorator for sections: makes them immutable, with keyword arguments, and compares them by value."""
     return attrs.define(model, frozen=True, kw_only=True, slots=False, repr=not model.NAMED,
                         hash=False if model.NAMED else None)
 
@@ -40,7 +40,7 @@ def _check(instance: Any, attribute: attrs.Attribute[Any], value: Any) -> None:
 
 
 def _as_float(value: Any) -> Any:
-    """Convert an integer to a float; return any other value unchanged for the check."""
+    """Convert an integer to a float. Return other values unchanged; the check of the key judges them."""
     try:
         return float(value) if type(value) is int else value
     except OverflowError:  # larger than any range
@@ -61,14 +61,14 @@ def _key(default: Any, rule: Rule, converter: Callable[[Any], Any] | None = None
 
 
 def parameter(default: Any, unit: str, low: float, high: float, source: str, *, above: bool = False) -> Any:
-    """Declare a number.
+    """Declare a key whose value is a number.
 
     :param default: default value; ``...`` for a required key, None for an optional one
-    :param unit: unit, ``-`` for none
+    :param unit: unit; ``-`` for a ratio
     :param low: lower end of the allowed range
-    :param high: upper end, itself allowed
+    :param high: upper end of the allowed range, itself allowed
     :param source: source of the default
-    :param above: whether ``low`` itself is excluded
+    :param above: whether ``low`` itself is not allowed
     """
     rule = Rule(NUMBER, source, Range(low, high, unit, above), optional=default is None)
     return _key(default, rule, _as_float)
@@ -85,9 +85,9 @@ def switch(default: Any, source: str) -> Any:
 
 
 def text(default: Any, source: str, *, pattern: str | Callable[[], str] | None = None) -> Any:
-    """Declare a text.
+    """Declare a key whose value is a text.
 
-    :param pattern: regular expression that the whole text must match, or a function that returns it on demand
+    :param pattern: regular expression that the whole text must match, or a function that returns one on demand
     """
     return _key(default, Rule(TEXT, source, pattern=pattern, optional=default is None))
 
@@ -100,15 +100,15 @@ def _called(names: Names) -> Callable[[], Sequence[str]]:
 
 
 def choice(default: Any, names: Names, source: str) -> Any:
-    """Declare one name out of several.
+    """Declare a key whose value is one of several names.
 
-    :param names: the names, or a function that returns them on demand
+    :param names: allowed names, or a function that returns them on demand
     """
     return _key(default, Rule(TEXT, source, known=_called(names), optional=default is None))
 
 
 def numbers(default: Any, unit: str, low: float, high: float, source: str, *, length: int | None = None) -> Any:
-    """Declare a list of numbers, each within the range.
+    """Declare a key whose value is a list of numbers, all within one range.
 
     :param length: number of entries; None: any number
     """
@@ -117,38 +117,38 @@ def numbers(default: Any, unit: str, low: float, high: float, source: str, *, le
 
 
 def attached_to_json(value: Any) -> dict[str, Any]:
-    """Return a replacement that json.dumps can write for an unsupported value of a case."""
+    """Return a JSON value for a value of a case that json.dumps cannot write."""
     if isinstance(value, Attached):
         return value.to_json()
     raise TypeError(f"{type(value).__name__} is no value of a case")
 
 
 def attached(source: str) -> Any:
-    """Declare a key for an :class:`Attached`; files and schemas do not have it."""
+    """Declare a key whose value is an :class:`Attached`; files and schemas do not contain such keys."""
     return _key(None, Rule(ATTACHED, source, optional=True))
 
 
 def texts(
     default: Any, source: str, names: Names | None = None, *, pattern: str | Callable[[], str] | None = None
 ) -> Any:
-    """Declare a list of texts, optionally out of given names; ``pattern`` as for :func:`text`, for editors."""
+    """Declare a list of texts, optionally restricted to given names; ``pattern`` as for :func:`text`, for editors."""
     return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names), pattern=pattern))
 
 
 def section(
     model: type[Section], *, required: bool = False, made: Callable[[], Section] | None = None, name: str | None = None
 ) -> Any:
-    """Declare a section of a file. A missing optional section has all defaults.
+    """Declare a section of a file. If an optional section is missing, all its keys have their defaults.
 
-    :param made: returns a missing section, if it does not have all defaults
-    :param name: its name in files, if it differs from the attribute
+    :param made: function that returns a missing section; None: all keys have their defaults
+    :param name: name in files, if it differs from that of the attribute
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(made or model)
     return attrs.field(default=default, metadata={SECTION: model}, alias=name)
 
 
 def optional_section(model: type[Section]) -> Any:
-    """Declare a section that may be missing; its value is then None."""
+    """Declare a section that may be missing. The value of a missing section is None."""
     return attrs.field(default=None, metadata={SECTION: model})
 
 
@@ -156,11 +156,11 @@ def tables(
     model: type[Section], source: str, *, required: bool = False,
     read: Callable[[str, Any], list[Any]] | None = None,
 ) -> Any:
-    """Declare a list of tables, ``[[node]]`` and the like.
+    """Declare a list of tables, for example ``[[node]]``.
 
     :param model: class of a table, an :class:`~statejump.schema.items.Item` unless ``read`` is given
     :param source: description of the tables
-    :param read: returns the items, for the name of the list and the result of tomllib
+    :param read: function that returns the items, from the name of the list and its tomllib value
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(list)
     return attrs.field(default=default, metadata={TABLES: model, READ: read, RULE: Rule(TEXT, source)})
@@ -184,16 +184,16 @@ class Section:
         def __init__(self, **keys: Any) -> None: ...
 
     def to_dict(self) -> dict[str, Any]:
-        """Return keys and values in the order of their declaration, sections as dicts."""
+        """Return keys and values in the order of their declaration. Sections become dicts."""
         return {name: _plain(self.value_named(name)) for name in fields_of(type(self))}
 
     def value_named(self, name: str) -> Any:
-        """Return the value of a key, or a section or list of tables of a case, by its name in files."""
+        """Return the value of a key, a section or a list of tables, by its name in files."""
         return getattr(self, fields_of(type(self))[name].name)
 
 
 def section_class(name: str, documentation: str, keys: Mapping[str, Any]) -> type[Section]:
-    """Return a section class with unknown keys, for programs that handle keys as data."""
+    """Return a new section class with given keys, for programs that handle keys as data."""
     return definition(type(name, (Section,), {**keys, "__doc__": documentation}))
 
 
@@ -215,7 +215,7 @@ def evolved(made: SectionType, **values: Any) -> SectionType:
 
 def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:
     """Return the keys of a section, or the sections of a file, by their names in files, in the order of their first
-    declaration. A kind that declares one of them again does not change its position."""
+    declaration. If a kind declares a name again, its position does not change."""
     if model not in _KNOWN:
         known = {attribute.alias: attribute for attribute in attrs.fields(model)}  # type: ignore[arg-type]
         order = dict.fromkeys(
@@ -233,13 +233,13 @@ def rule_of(attribute: attrs.Attribute[Any]) -> Rule:
 
 
 def section_of(attribute: attrs.Attribute[Any]) -> type[Section] | None:
-    """Return the class of a section of a file; None for a list of tables."""
+    """Return the class of a section of a file; None if the attribute is a list of tables."""
     found: type[Section] | None = attribute.metadata.get(SECTION)
     return found
 
 
 def tables_of(attribute: attrs.Attribute[Any]) -> type[Section] | None:
-    """Return the class of the tables of a list; None for a section."""
+    """Return the class of the tables in a list; None if the attribute is a section."""
     found: type[Section] | None = attribute.metadata.get(TABLES)
     return found
 

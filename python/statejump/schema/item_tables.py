@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lists of tables in columns: many items as one array per key, from table files or from arrays of a program.
+"""Lists of tables, stored as columns: one array per key for many items, from table files or from arrays of a program.
 
-A million items as objects take gigabytes; their arrays do not. The input is an :class:`ItemTable` instead of a list of
-dicts. A case stores :class:`ItemColumns` instead of a list of items.
+A million items take gigabytes as objects, but much less as arrays. The input is an :class:`ItemTable` instead of a list
+of dicts. A case stores :class:`ItemColumns` instead of a list of items.
 """
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ItemType = TypeVar("ItemType", bound=Section)
 
 
 def _plain(values: np.ndarray | Texts) -> list[Any]:
-    """Return the elements of a column as in a document; None if missing."""
+    """Return the elements of a column in the form that documents have; missing elements are None."""
     if isinstance(values, Texts):
         return values.plain()
     found: list[Any] = values.tolist()
@@ -37,7 +37,7 @@ def _plain(values: np.ndarray | Texts) -> list[Any]:
 
 
 def once(values: np.ndarray) -> np.ndarray:
-    """Return numbers by rows. If all rows are equal to the last bit, the memory has one row only."""
+    """Return numbers by rows. If all rows are equal to the last bit, only one row is kept in memory."""
     if len(values) < 2 or values.dtype.kind not in "fiub" or values.dtype.itemsize > 8:
         return values
     # As integers, bits decide: NaN equals itself and differs from other NaN, +0 differs from -0.
@@ -57,10 +57,10 @@ def _as_column(values: Any) -> np.ndarray | Texts:
 
 
 class ItemTable:
-    """Items in columns of one length, one per key.
+    """Columns of equal length, one per key, that hold items.
 
-    :param columns: by key: numbers (n,), NaN if missing; vectors (n, k) of numbers; texts (n,), None if missing; lists
-        of texts (n, k), "" or None after their end; texts also as :class:`Texts`
+    :param columns: column of each key: numbers (n,) or vectors (n, k), NaN if missing; texts (n,), None if missing;
+        lists of texts (n, k), "" or None after their end; texts also as :class:`Texts`
     :raises NotAllowed: the columns have different lengths
     """
 
@@ -92,13 +92,13 @@ def with_rows(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class ItemColumns(Sequence[ItemType], Generic[ItemType]):
-    """The items of a list, created one by one on access; immutable.
+    """The items of a list, stored as columns. An item object is created when it is accessed; it is immutable.
 
     :param model: class of an item
     :param section: name of the list
-    :param table: its columns; a key without column has its default
-    :raises StatejumpError: one failure, without the file's name: an unknown key, a missing one, or the first invalid
-        value of a column
+    :param table: columns of the list; a key without column has its default
+    :raises StatejumpError: the first failure, without the file's name: an unknown key, a missing one, or an invalid
+        value
     """
 
     def __init__(self, model: type[ItemType], section: str, table: ItemTable) -> None:
@@ -135,7 +135,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
             yield from self._made(slice(start, start + BLOCK))
 
     def _made(self, places: slice) -> Iterator[ItemType]:
-        """Create items. Their keys always have one order, so that Python shares the names of the keys."""
+        """Create item objects. Their keys always have the same order, so that Python shares the names of the keys."""
         listed = [
             _plain(self._given[key][places]) if key in self._given else repeat(default_of(field))
             for key, field in self._fields.items()
@@ -154,7 +154,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
     __hash__ = None  # type: ignore[assignment]  # as of a list
 
     def numbers(self, key: str) -> np.ndarray:
-        """Return a number (n,) or a vector (n, k) of every item; NaN if missing."""
+        """Return the values of a key with numbers (n,) or vectors (n, k) for all items; missing values are NaN."""
         found = self._given.get(key)
         if found is None:
             default = default_of(self._fields[key])
@@ -163,7 +163,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         return found
 
     def texts(self, key: str) -> Texts:
-        """Return a text (n,) or a list of texts (n, k) of every item."""
+        """Return the values of a key with texts (n,) or lists of texts (n, k) for all items."""
         found = self._given.get(key)
         if found is None:
             default = default_of(self._fields[key])
@@ -175,13 +175,13 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         return found
 
     def value(self, key: str, place: int) -> Any:
-        """Return the value of one key of one item, None if missing."""
+        """Return the value of one key of one item; None if it is missing."""
         if key not in self._given:
             return default_of(self._fields[key])
         return _plain(self._given[key][place:place + 1])[0]
 
     def values(self, key: str) -> Iterator[Any]:
-        """Return the values of a key one by one, None if missing."""
+        """Yield the values of a key item by item; None if a value is missing."""
         if key not in self._given:
             return repeat(default_of(self._fields[key]), self._length)
         return (value for start in range(0, self._length, BLOCK)
@@ -189,7 +189,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
 
 
 class _Place:
-    """An item in columns, given by its index; keys are looked up on access."""
+    """An item that is stored in columns, given by its index. The value of a key is looked up when it is accessed."""
 
     def __init__(self, items: ItemColumns[Any], place: int) -> None:
         self._items, self._place = items, place
@@ -209,7 +209,7 @@ class Named(Mapping[str, Any]):
 
     @cached_property
     def _place(self) -> dict[str, int]:
-        """Indices by name, built at the first look-up, because comparisons of arrays do not need them."""
+        """Indices of items by name, computed at the first look-up, because comparisons of arrays need none."""
         return {name: place for place, name in enumerate(self._items.values("name"))}
 
     def __getitem__(self, name: str) -> Any:
@@ -229,9 +229,9 @@ NONE, UNKNOWN = -1, -2  # indices of a missing value, and of an unknown name
 
 
 class ItemIndex:
-    """The indices of items by their names, which are all different.
+    """The indices of items by their names. No two items have the same name.
 
-    :param items: one by one or in columns
+    :param items: items as a list of objects or in columns
     """
 
     def __init__(self, items: Sequence[Any]) -> None:
@@ -246,14 +246,14 @@ class ItemIndex:
         return {name: place for place, name in enumerate(self._names())}
 
     def called(self, names: Sequence[str]) -> np.ndarray:
-        """Return the indices of the items with these names; UNKNOWN. The method stores no other names."""
+        """Return the indices of the items with these names; UNKNOWN if there is none. Other names are not stored."""
         wanted = set(names)
         found = {name: place for place, name in enumerate(self._names()) if name in wanted}
         return np.array([found.get(name, UNKNOWN) for name in names], dtype=int)
 
     @cached_property
     def _of_word(self) -> np.ndarray:
-        """Return the index of the item whose name is a given word of its own column of names."""
+        """Return for each text in the column of names the index of the item with this name."""
         assert isinstance(self._items, ItemColumns)
         names = self._items.texts("name")
         found = np.full(len(names.words), UNKNOWN, np.int32)
@@ -262,8 +262,8 @@ class ItemIndex:
         return found
 
     def of(self, items: Sequence[Any], key: str) -> np.ndarray:
-        """Return the index of the item that a key of every item names (n,), or (n, k) for lists; NONE, UNKNOWN. Lists
-        have NONE after their end."""
+        """Return, for every item of a list, the index of the item that its key names (n,), or (n, k) for lists; NONE
+        for a missing name, UNKNOWN for an unknown one. Lists have NONE after their end."""
         if not isinstance(items, ItemColumns):
             return self._of_each([getattr(item, key) for item in items])
         given = items.texts(key)
@@ -294,9 +294,10 @@ class ItemIndex:
 def where_wrong(
     items: Sequence[ItemType], wrong: Callable[[ItemColumns[ItemType]], np.ndarray]
 ) -> Iterable[ItemType]:
-    """Return the items that must be checked one by one: all items of a list; of columns only those that may be invalid.
+    """Return the items to check one by one: all items of a list, or those in columns that may be invalid.
 
-    :param wrong: returns the items of an :class:`ItemColumns` (n,) that may be invalid; must include all invalid ones
+    :param wrong: function that returns which items of an :class:`ItemColumns` (n,) may be invalid; these must include
+        all invalid items
     """
     if not isinstance(items, ItemColumns):
         return items
@@ -304,7 +305,7 @@ def where_wrong(
 
 
 def repeated_names(items: Sequence[Any]) -> bool:
-    """Return whether items in columns have a repeated name; always True for a list, which is checked item by item."""
+    """Return whether names of items in columns are repeated. A list is checked item by item, so it returns True."""
     if not isinstance(items, ItemColumns):
         return True
     names = items.texts("name")
@@ -312,7 +313,7 @@ def repeated_names(items: Sequence[Any]) -> bool:
 
 
 def each(items: Sequence[Any], *keys: str) -> Iterable[Any]:
-    """Return the items of a list for access to these keys only; of columns only these keys are created."""
+    """Return the items of a list for access to given keys only. For items in columns, only these keys are created."""
     if not isinstance(items, ItemColumns):
         return items
     return starmap(namedtuple("_Item", keys), zip(*(items.values(key) for key in keys)))  # type: ignore[misc]
@@ -324,7 +325,7 @@ def by_name(items: Sequence[Any]) -> Mapping[str, Any]:
 
 
 def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[Any]) -> np.ndarray | Texts:
-    """Return a column with the key's default for missing values, after a check of every value against the rule."""
+    """Check every value of a column against the rule of its key. Return the column with defaults for missing values."""
     rule, values = rule_of(field), table.columns[key]
     default = None if is_required(field) else default_of(field)
     allowed = rule.allowed
@@ -379,7 +380,7 @@ def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[An
 
 
 def _wrong_texts(key: str, rule: Rule, texts: Texts, required: bool) -> int | None:
-    """Return the first row of a column of texts that its rule refuses."""
+    """Return the first row of a column of texts that violates the rule of its key; None if there is none."""
     wrong = np.zeros(len(texts.words), dtype=bool)
     wrong[0] = required and texts.ndim == 1
     if rule.form != (TEXT if texts.ndim == 1 else TEXTS):
@@ -401,7 +402,7 @@ def _wrong_texts(key: str, rule: Rule, texts: Texts, required: bool) -> int | No
 
 
 def _whole(values: np.ndarray) -> np.ndarray:
-    """Return a column of numbers with integers as such and None for NaN; the rule checks all other values."""
+    """Return numbers as objects: integers as such, None for NaN. The rule of the key checks all other values."""
     found = np.empty(values.shape, dtype=object)
     for place, value in np.ndenumerate(values):
         found[place] = None if np.isnan(value) else int(value) if value.is_integer() else float(value)
@@ -409,7 +410,7 @@ def _whole(values: np.ndarray) -> np.ndarray:
 
 
 def where(section: str, table: Any, number: int) -> str:
-    """Return the name of an item in messages: its name, or its number if it has none."""
+    """Return the name by which messages refer to an item: its name, or its number if it has no name."""
     name = table.get("name") if isinstance(table, dict) else None
     return f"{section} {name!r}" if isinstance(name, str) and name else f"{section} {number}"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lists of tables in case files, [[node]] and the like: items with a name, checked one by one."""
+"""Lists of tables in case files, such as [[node]]: items with a name, checked one by one."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -26,15 +26,15 @@ class Item(Section):
 
 
 def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:
-    """Return the items of a list of tables, one by one or in columns, as given.
+    """Return the items of a list of tables, as objects or in columns, as they are given.
 
     A truss of 10 000 joints has some 100 000 items. Numbers are therefore checked by direct comparisons with their
     range, and items are created without a second check by their class.
 
     :param model: class of an item
     :param section: name of the list
-    :param value: result of tomllib, or an :class:`~statejump.schema.item_tables.ItemTable`
-    :raises StatejumpError: one failure, without the file's name
+    :param value: list that tomllib returned, or an :class:`~statejump.schema.item_tables.ItemTable`
+    :raises StatejumpError: the first failure, without the file's name
     """
     if isinstance(value, ItemTable):
         return ItemColumns(model, section, value)
@@ -79,8 +79,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
 
 
 class _Quick(Generic[ItemType]):
-    """Fast checks that accept a value without its rule: numbers in range, texts without constraints, and texts that
-    passed before.
+    """Fast checks that accept a value without its rule: a number in its range, a text without constraints, or a text
+    that passed an earlier check.
 
     :param model: class of an item
     """
@@ -104,8 +104,8 @@ class _Quick(Generic[ItemType]):
             key: set() for key, rule in self.rules.items() if rule.form == TEXT and key not in self.free}
 
     def checked(self, key: str, given: Any) -> Any:
-        """Return a value in the form in which its key stores it. :raises StatejumpError: the key does not exist or
-        refuses the value"""
+        """Return a value in the form in which its key stores it. :raises StatejumpError: the key is unknown, or refuses
+        the value"""
         field = self.fields.get(key)
         if field is None:
             raise UnknownKey(key, **suggestion(key, list(self.fields)))

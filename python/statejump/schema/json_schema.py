@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """JSON Schema of case and campaign files, for editors and for programs that write such files.
 
-It is generated from the definitions that check the files (:mod:`statejump.schema.fields` and the kinds), so units,
-ranges, names, defaults and sources are written once. A schema describes every key by itself, and the keys that belong
-to a choice. It cannot describe conditions between numbers, nor that ``1.0`` is no integer and ``nan`` no number.
-Reading the file checks these.
+The schemas are generated from the definitions that check the files (:mod:`statejump.schema.fields` and the kinds), so
+units, ranges, names, defaults and sources are written once. A schema describes every key by itself, and the keys that a
+choice requires. It cannot describe conditions between numbers, or that ``1.0`` is not an integer and ``nan`` not a
+number. These are checked when a file is read.
 """
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _sentence(text: str) -> str:
 
 
 def _described(attribute: Any) -> Schema:
-    """Text that an editor shows for a key: rule, default and its source."""
+    """Return the text that an editor shows for a key: its rule, its default and the source of the default."""
     rule = rule_of(attribute)
     source = rule.source
     # The source of a free text describes its purpose.
@@ -78,7 +78,7 @@ def _text(rule: Rule) -> Schema:
 def key_schema(attribute: Any) -> Schema:
     """Return the schema of one key of a section.
 
-    :param attribute: its declaration, a value of :func:`statejump.schema.fields.fields_of`
+    :param attribute: declaration of the key, a value of :func:`statejump.schema.fields.fields_of`
     """
     rule = rule_of(attribute)
     if rule.form == SWITCH:
@@ -92,8 +92,8 @@ def key_schema(attribute: Any) -> Schema:
 
 
 def _conditions(model: type[Section]) -> list[Schema]:
-    """Conditions on keys that one choice of a section requires and the others refuse, see ``Section.GOES_WITH`` and
-    ``Section.ONE_OF``."""
+    """Return schema conditions on the keys that a choice in a section requires or refuses, see ``Section.GOES_WITH``
+    and ``Section.ONE_OF``."""
     found = []
     for choice, keys in model.GOES_WITH.items():
         for name in rule_of(fields_of(model)[choice]).names:
@@ -136,7 +136,7 @@ def section_schema(model: type[Section]) -> Schema:
 
 
 def _part(attribute: Any) -> Schema:
-    """Return the schema of the content of a name at the top level of a file."""
+    """Return the schema for a section or list at the top level of a file."""
     section, table = section_of(attribute), tables_of(attribute)
     if table is not None:
         item = section_schema(table)
@@ -167,9 +167,9 @@ def _kind(kind: Kind) -> Schema:
 
 
 def _any_case(known: list[str], alone: bool) -> Schema:
-    """Case files of every kind.
+    """Return the schema for case files of every kind.
 
-    :param alone: include the schemas of the kinds instead of references to their files
+    :param alone: whether to include the schemas of the kinds instead of references to their files
     """
     found: Schema = {
         "title": "statejump case",
@@ -199,11 +199,11 @@ def names() -> list[str]:
 
 
 def schema(name: str = ANY, alone: bool = True) -> Schema:
-    """Return a schema as a document for json.
+    """Return a schema as a dict for json.
 
     :param name: one of :func:`names`; ``case`` accepts case files of every kind
-    :param alone: whether ``case`` includes the schemas of the kinds; else it refers to the files beside its own
-    :raises StatejumpError: the schema does not exist
+    :param alone: whether ``case`` includes the schemas of the kinds; otherwise it refers to their files in its folder
+    :raises StatejumpError: there is no schema with this name
     """
     check_name("KIND", name, names())
     if name == ANY:
@@ -226,7 +226,7 @@ def file_name(name: str) -> str:
 
 
 def write_all(folder: Path) -> list[Path]:
-    """Write every schema into its own file in a folder, and return their paths."""
+    """Write every schema into a file of its own in a folder, and return the paths."""
     written = []
     for name in names():
         with write_atomically(folder / file_name(name)) as stream:
@@ -236,10 +236,10 @@ def write_all(folder: Path) -> list[Path]:
 
 
 def head_line(name: str, file: Path) -> str:
-    """Return the first line of a case file, by which editors (taplo, Even Better TOML) find its schema.
+    """Return the first line of a case file by which editors (taplo, Even Better TOML) find its schema.
 
     :param name: name of the schema
-    :param file: file that gets the line; files of one tree refer to each other relatively
+    :param file: case file that gets the line; if it is in the same folder tree as the schema, the reference is relative
     """
     to, file = (_paths.SCHEMA / file_name(name)).resolve(), file.resolve()
     if _paths.SCHEMA.resolve().parent in file.parents:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keys by their path: ``section.key`` as in a case file, ``section.item.key`` of an item of a list of tables,
-``section.*.key`` of all its items, ``section.joint*.key`` of matching items. Names of items may contain dots, because
-the key follows the last one."""
+"""Paths of keys: ``section.key`` as in a case file, ``section.item.key`` for one item of a list of tables,
+``section.*.key`` for all its items, ``section.joint*.key`` for matching items. Names of items may contain dots, because
+the key follows the last dot."""
 from __future__ import annotations
 
 import warnings
@@ -20,19 +20,19 @@ EVERY = "*"
 
 
 def split_path(path: str) -> tuple[str, str, str]:
-    """Return section, item ("" for a plain section) and key of a path."""
+    """Split a path into section, item ("" if the section is not a list) and key."""
     section, _, rest = path.partition(".")
     item, _, key = rest.rpartition(".")
     return section, item, key
 
 
 def meant(item: str, names: Collection[str]) -> list[str]:
-    """Return the names that match an item of a path: itself, or all matches of a pattern."""
+    """Return the names that the item of a path means: itself if it is a name, otherwise all names that match it."""
     return [item] if item in names else [name for name in names if fnmatchcase(name, item)]
 
 
 def plain(value: Any) -> Any:
-    """Convert numbers and arrays of numpy, also in lists and dicts, to numbers and lists of Python."""
+    """Convert numbers and arrays of numpy to numbers and lists of Python, also inside lists and dicts."""
     if isinstance(value, Mapping):
         return {key: plain(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
@@ -41,7 +41,7 @@ def plain(value: Any) -> Any:
 
 
 def keys_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
-    """Return every key of a kind of case by its path, ``section.*.key`` for those of items."""
+    """Return every key of a kind of case by its path. The path of a key of items is ``section.*.key``."""
     found = {}
     for name, attribute in fields_of(model).items():
         item = tables_of(attribute)
@@ -60,9 +60,9 @@ def pattern_of(path: str) -> str:
 
 
 def current(model: type[Section], path: str, file: str = "") -> str:
-    """Return the present path of a key. For a former path it also emits a :class:`FutureWarning`.
+    """Return the present path of a key. If the given path is a former one, also emit a :class:`FutureWarning`.
 
-    :param file: file of the key, for the warning
+    :param file: name of the file with the key, for the warning
     """
     now: str | None = model.MOVED.get(path)
     if now is None:
@@ -73,10 +73,10 @@ def current(model: type[Section], path: str, file: str = "") -> str:
 
 
 def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "") -> Mapping[str, Any]:
-    """Return a parsed case file with every key at its present path.
+    """Return a parsed case file with every key at its present path instead of a former one.
 
-    :param file: its name, for warnings
-    :raises NotAllowed: a key has a value at its former and at its present path
+    :param file: name of the file, for warnings
+    :raises NotAllowed: a key has a value both at its former and at its present path
     """
     for old in model.MOVED:
         section, _, key = split_path(old)
@@ -106,7 +106,7 @@ def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
 
 
 def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any) -> None:
-    """Set a key of a parsed case file. None removes it, so that its default applies.
+    """Set the value of a key in a parsed case file. None removes the key, so that its default applies.
 
     :raises UnknownKey: the key or the item does not exist
     """
@@ -131,7 +131,7 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
 
 
 def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return the fields of the UnknownKey error for an item that does not exist."""
+    """Return the fields of an UnknownKey error about an item that does not exist."""
     if not names:
         return {"code": "section_not_in_case", "table": section}
     if any(sign in item for sign in "*?["):
@@ -141,9 +141,9 @@ def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[st
 
 
 def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Return a copy of a parsed case file with many values; a pattern sets the value in every matching item.
+    """Return a copy of a parsed case file with many other values. A pattern sets the value in every matching item.
 
-    :param values: values by path; the caller knows that the case has these paths
+    :param values: pairs of path and value; the caller must know that the case has these paths
     """
     changed: dict[str, Any] = {
         section: [dict(table) for table in content] if isinstance(content, list) else dict(content)
@@ -186,11 +186,11 @@ def value_of(case: Section, path: str) -> Any:
 
 
 def with_values(case: SectionType, changes: Mapping[str, Any]) -> SectionType:
-    """Return a case with other values. Each is checked against its own rule, but not the case as a whole: a study may
-    use values that no case file would.
+    """Return a case with other values. Each value is checked against its rule, but the case is not checked as a whole,
+    because a study may use values that no case file would have.
 
-    :param changes: value by ``section.key``; keys of lists of tables do not change
-    :raises NotAllowed: a value is not allowed
+    :param changes: values by ``section.key``; keys of lists of tables cannot be changed
+    :raises NotAllowed: a value violates its rule
     """
     sections: dict[str, dict[str, Any]] = {}
     for path, value in changes.items():

@@ -22,15 +22,15 @@ ATTACHED = "attached"  # value that no file can contain
 
 @attrs.frozen
 class Rule:
-    """Rule for the value of a key.
+    """Rule that the value of a key must satisfy.
 
-    :param form: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS or ATTACHED
+    :param form: type: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS or ATTACHED
     :param source: source of the default, and purpose of the key
-    :param allowed: range of a number, or of every number of a list
-    :param known: allowed names of a text, or of every text of a list; a function, because the catalogue of laws may
-        grow
-    :param pattern: regular expression that the whole text must match, or a function that returns it on demand
-    :param optional: whether None represents a missing value
+    :param allowed: allowed range of a number, or of every number of a list
+    :param known: function that returns the allowed names of a text, or of every text of a list; the catalogue of laws
+        grows
+    :param pattern: regular expression that the whole text must match, or a function that returns one on demand
+    :param optional: whether None is allowed and means a missing value
     :param length: number of entries of a list
     """
 
@@ -54,11 +54,11 @@ class Rule:
 
     @property
     def expression(self) -> str | None:
-        """Regular expression that a text must match as a whole; None: any text."""
+        """Regular expression that the whole text must match; None if any text is allowed."""
         return self.pattern() if callable(self.pattern) else self.pattern
 
     def needs(self) -> str:
-        """Return the part of a sentence that states what the key needs."""
+        """Return the part of an error message that states which values the key allows."""
         if self.form == TEXTS:
             return "a list of texts in quotes is needed"
         if self.form == NUMBERS:
@@ -77,7 +77,7 @@ class Rule:
 
 
 def is_finite_number(value: Any) -> bool:
-    """Return whether a value of a document is a finite number; an integer may have any number of digits."""
+    """Return whether a value of a document is a finite number. An integer may have any number of digits."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
@@ -138,8 +138,8 @@ def _texts(rule: Rule, key: str, value: Any) -> None:
 
 
 class Attached:
-    """Value of a key that a file cannot contain: arrays that were read from another file. Immutable and hashable;
-    copies of a case share it."""
+    """Value of a key that a file cannot contain: arrays that were read from another file. It is immutable and hashable,
+    so copies of a case share it."""
 
     def to_json(self) -> dict[str, Any]:
         """Return its identification for JSON; the arrays themselves are not included."""
@@ -156,7 +156,7 @@ _CHECKS = {NUMBER: _number, WHOLE: _number, SWITCH: _switch, TEXT: _text, NUMBER
 
 
 def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
-    """Return the value if it is one of the names, else raise NotAllowed with the most similar name."""
+    """Return the value if it is one of the allowed names. Otherwise raise NotAllowed with the most similar name."""
     if value in names:
         return str(value)
     more |= {"allowed": tuple(names), "known": " or ".join(repr(name) for name in names)}
@@ -167,12 +167,12 @@ def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
 
 
 def folder_name(text: str) -> str:
-    """Convert a text to the name of a folder: '_' replaces everything except letters, digits, '_' and '-'."""
+    """Convert a text to a folder name: '_' replaces all characters except letters, digits, '_' and '-'."""
     return _NOT_IN_FOLDER_NAME.sub("_", text).strip("_-") or "case"
 
 
 def suggestion(word: str, known: Sequence[str], before: str = "", after: str = "") -> dict[str, str]:
-    """Return code and details of an UnknownKey: the most similar known word, else all of them."""
+    """Return code and details of an UnknownKey error: the known word most similar to a word, or all known words."""
     match = difflib.get_close_matches(str(word), known, n=1, cutoff=0.5)  # a dict may have keys that are no texts
     if match:
         return {"code": "misspelt_key", "meant": f"{before}{match[0]}{after}"}

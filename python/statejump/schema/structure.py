@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Conversion of a parsed TOML document to sections. A failure names section and key."""
+"""Conversion of a parsed TOML document to sections. A failure names its section and key."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -14,10 +14,10 @@ from statejump.schema.rules import suggestion
 def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
     """Return the sections of a parsed TOML document.
 
-    An unknown key is reported first, because a misspelt key is missing as well.
+    An unknown key is reported before a missing key, because a misspelt key is both unknown and missing.
 
-    :param model: class of the file: its fields are sections and lists of tables
-    :raises StatejumpError: one failure, without the file's name
+    :param model: class of the file, whose fields are sections and lists of tables
+    :raises StatejumpError: the first failure, without the file's name
     """
     wanted = fields_of(model)
     for name in data:

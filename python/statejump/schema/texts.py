@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of texts, by which items refer to each other. Every text is stored once, with the index of each use.
+"""Columns of texts by which items refer to each other. Every different text is stored once; a use is its index.
 
-A million texts as objects take ten times the memory of their bytes. Here they are consecutive bytes, and become objects
-only on access.
+A million texts as Python objects take ten times the memory of their bytes. This module stores them as consecutive
+bytes, and creates an object only when a text is accessed.
 """
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _AS_IT_IS = "surrogatepass"
 
 
 class TextPool:
-    """Texts by number, as UTF-8. Number 0 means a missing text.
+    """Texts by number, stored as UTF-8. Number 0 means a missing text.
 
-    :param texts: texts of the numbers from 1 on
+    :param texts: the texts with the numbers 1, 2, ...
     """
 
     def __init__(self, texts: Iterable[str] = ()) -> None:
@@ -32,10 +32,10 @@ class TextPool:
         self.add([text.encode(errors=_AS_IT_IS) for text in texts], _AS_IT_IS)
 
     def add(self, texts: Sequence[bytes], errors: str = "strict") -> None:
-        """Give texts the next numbers.
+        """Append texts, which get the next numbers.
 
-        :param errors: treatment of invalid UTF-8, as for bytes.decode()
-        :raises UnicodeDecodeError: one is not UTF-8; none is added
+        :param errors: how to treat invalid UTF-8, as for bytes.decode()
+        :raises UnicodeDecodeError: a text is not valid UTF-8; none of the texts is appended
         """
         joined = b"".join(texts)
         if not (joined.isascii() and joined.decode().isprintable()):
@@ -63,14 +63,14 @@ class TextPool:
 
 
 class Numbering:
-    """Assigns numbers to texts among words; new texts get new numbers. Discarded after all texts are read."""
+    """Assigns numbers to texts while files are read; a new text gets a new number. Not needed after that."""
 
     def __init__(self) -> None:
         self.words = TextPool()
         self._numbers = {b"": 0}
 
     def numbers(self, texts: Sequence[bytes]) -> np.ndarray:
-        """Return the numbers of texts, 0 for empty ones.
+        """Return the numbers of texts. Empty texts have the number 0.
 
         :raises UnicodeDecodeError: a text is not UTF-8
         """
@@ -85,9 +85,9 @@ class Numbering:
 class Texts:
     """A column of texts.
 
-    :param numbers: indices in ``words`` (n,), or (n, k) for lists; 0: missing
-    :param words: the texts
-    :param none: replacement of a missing text, the default of the key
+    :param numbers: indices in ``words`` (n,), or (n, k) for lists; index 0 means a missing text
+    :param words: the different texts
+    :param none: text that replaces a missing one, the default of the key
     """
 
     numbers: np.ndarray
@@ -130,7 +130,7 @@ class Texts:
         return np.asarray(self.numbers != 0)
 
     def has(self, text: str) -> np.ndarray:
-        """Return the rows (n,) that equal this text, or lists that contain it."""
+        """Return for each row (n,) whether it equals a text or, for lists, contains it."""
         used = self.used()
         same = [word == text for start in range(0, len(used), BLOCK)
                 for word in self.words.listed(used[start:start + BLOCK])]
@@ -142,7 +142,7 @@ class Texts:
         return np.asarray(found | (self.numbers == 0)) if self.none == text else found
 
     def used(self) -> np.ndarray:
-        """Return the indices of the used words, ascending, without the missing text."""
+        """Return the indices of the texts that are used, in ascending order, without the missing text."""
         found = np.zeros(len(self.words), dtype=bool)
         found[self.numbers] = True
         found[0] = False
@@ -150,7 +150,7 @@ class Texts:
 
 
 def coded(values: np.ndarray) -> Texts:
-    """Convert a column to one of texts; None and, in lists, "" mean a missing text."""
+    """Convert a column of objects to a column of texts. None and, in lists, "" mean a missing text."""
     words: dict[Any, int] = {None: 0}
     flat = [text if text or values.ndim == 1 else None for text in values.reshape(-1).tolist()]
     numbers = np.fromiter((words.setdefault(text, len(words)) for text in flat), np.int32, len(flat))
@@ -158,9 +158,9 @@ def coded(values: np.ndarray) -> Texts:
 
 
 class Names(Sequence[str]):
-    """Names of items, created on access.
+    """Names of items; a name becomes an object on access.
 
-    :param texts: one per row, none is missing
+    :param texts: column of the names; no name is missing
     """
 
     def __init__(self, texts: Texts) -> None:
@@ -195,7 +195,7 @@ class Names(Sequence[str]):
 
 
 class InBlocks(Sequence[str]):
-    """Names for access in the order of their indices: only some are objects at a time."""
+    """Names for access in ascending order of their indices. Only one block of names at a time is held as objects."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self._names, self._start, self._block = names, -1, list[str]()

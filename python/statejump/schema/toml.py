@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reader and writer of TOML files; a fault is one sentence with its line."""
+"""Reader and writer of TOML files. A faulty file causes an error of one sentence with the line."""
 from __future__ import annotations
 
 import re
@@ -17,10 +17,10 @@ LARGEST_BYTES = 1 << 28  # ten times the size of a truss of 100 000 joints
 
 
 def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
-    """Return the text of a TOML file and its content.
+    """Return the text of a TOML file and its parsed content.
 
-    :param what: type of the file, for the message if it does not exist: ``case`` or ``campaign``
-    :raises Unreadable: one sentence with the file and, if it is not TOML, the line
+    :param what: type of the file, for the message that it does not exist: ``case`` or ``campaign``
+    :raises Unreadable: the file does not exist or is not TOML; one sentence with the file and the line
     """
     try:
         with Path(path).open("rb") as stream:
@@ -46,8 +46,8 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
 
 
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
-    """Return the parser's reason and the line. Python 3.14 has both as attributes; before, they are the two halves of
-    its message."""
+    """Return the reason and the line in an error of the TOML parser. In Python 3.14 they are attributes of the error;
+    before, they are the two halves of its message."""
     if sys.version_info >= (3, 14):
         return str(failure.msg), int(failure.lineno)
     reason, _, place = str(failure).rpartition(" (at ")

@@ -2,8 +2,8 @@
 """A paraboloid through the nodes of a surface in the reference configuration, and the error of the surface after the
 nodes have moved.
 
-Results are of first order in the displacements, which are about a millionth of the size of the surface. If nodes and
-axis lie in one plane, the surface is a profile: its paraboloid is a parabola, and rigid motion is planar.
+Results are of first order in the displacements, which are about a millionth of the size of the surface. If all nodes
+and the axis lie in one plane, the surface is a profile: its paraboloid is a parabola, and rigid motion is planar.
 """
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ LEAST_SINGULAR_VALUE = 1e-6
 class Errors:
     """Errors of a surface whose nodes have moved.
 
-    :param rms_m: RMS over the nodes by definition [m]
-    :param residual_m: residuals (nodes,) by definition [m]
+    :param rms_m: RMS over the nodes by definition of the error [m]
+    :param residual_m: residuals (nodes,) by definition of the error [m]
     :param tilt_rad: rotation of the axis of the best-fit paraboloid towards the lateral axes of the frame
-    :param vertex_shift_m: displacement of its vertex along the lateral axes, then along the axis [m]; a lateral shift
-        that the nodes do not distinguish from tilt is 0
-    :param focal_change_m: change of its focal length [m]; None: the nodes do not determine it
+    :param vertex_shift_m: displacement of the paraboloid's vertex along the lateral axes, then along the axis [m]; a
+        lateral shift that the nodes do not distinguish from tilt is 0
+    :param focal_change_m: change of its focal length [m]; None if the nodes do not determine it
     """
 
     rms_m: dict[str, float]
@@ -51,8 +51,8 @@ class Errors:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Moves that the nodes determine: an orthonormal basis of their effect on the nodes, and the moves as combinations
-    of this basis."""
+    """Moves that the nodes determine: an orthonormal basis of their effect on the nodes, and the matrix from
+    coefficients in this basis to moves."""
 
     moves: tuple[str, ...]
     basis: np.ndarray
@@ -61,13 +61,13 @@ class _Fit:
 
 @dataclass(frozen=True)
 class Design:
-    """Nodes in the reference configuration, and the paraboloid through them.
+    """Nodes in the reference configuration, and the best-fit paraboloid for them.
 
-    :param position_m: (nodes, 3) [m]
-    :param frame: (2 or 3, 3) rows: one (profile) or two lateral axes, then the axis
+    :param position_m: positions (nodes, 3) [m]
+    :param frame: rows (2 or 3, 3): one (profile) or two lateral axes, then the axis
     :param local_m: (nodes, 2 or 3) positions relative to the vertex, in the frame [m]
     :param vertex_m: vertex in space [m]
-    :param curvature_per_m: 1/(4 F) [1/m]; 0: a plane
+    :param curvature_per_m: 1/(4 F) [1/m] for the focal length F; 0: a plane
     :param design_rms_m: RMS distance of the reference nodes from the paraboloid, along the axis [m]
     """
 
@@ -82,11 +82,11 @@ class Design:
     def of(
         cls, position_m: Any, axis: Sequence[float] | np.ndarray = (0, 0, 1), focal_length_m: float | None = None
     ) -> Design:
-        """Return the least-squares paraboloid along the axis; a plane, if the nodes determine no focal length.
+        """Return the least-squares paraboloid with a given axis; it is a plane if the nodes determine no focal length.
 
-        :param position_m: (nodes, 3) [m]
-        :param axis: direction of the paraboloid's axis, of any length
-        :param focal_length_m: focal length [m]; None: the best fit
+        :param position_m: positions (nodes, 3) [m]
+        :param axis: direction of the paraboloid's axis, a vector of any length
+        :param focal_length_m: focal length [m]; None: it is fitted
         :raises StatejumpError: nodes or axis are invalid, or there are too few nodes
         """
         position, way = _points("position_m", position_m), np.asarray(axis, dtype=float)
@@ -129,22 +129,24 @@ class Design:
 
     @property
     def aperture_m(self) -> tuple[np.ndarray, float]:
-        """Middle of the aperture, from the vertex across the axis, and its radius [m]. The circle about the mean of the
-        nodes contains all nodes."""
+        """Aperture: a circle that contains all nodes. Return its centre, the mean of the nodes, as lateral coordinates
+        from the vertex [m], and its radius [m]."""
         lateral = self.local_m[:, :-1]
         middle = lateral.mean(axis=0)
         return middle, float(np.max(np.linalg.norm(lateral - middle, axis=1)))
 
     @property
     def normals(self) -> np.ndarray:
-        """Unit normals (nodes, 2 or 3) of the paraboloid at the nodes, in the frame, with positive axial component."""
+        """Unit normals (nodes, 2 or 3) of the paraboloid at the nodes, in the frame; the axial component is
+        positive."""
         slopes = 2 * self.curvature_per_m * self.local_m[:, :-1]
         found = np.column_stack((-slopes, np.ones(len(slopes))))
         unit: np.ndarray = found / np.linalg.norm(found, axis=1)[:, None]
         return unit
 
     def _moves(self) -> dict[str, np.ndarray]:
-        """Effects of moves of the paraboloid along the normals, for 1 m, 1 rad, and 1/m of curvature."""
+        """Return the shift along the normals at the nodes by unit moves of the paraboloid: 1 m, 1 rad, 1/m
+        curvature."""
         normals, size = self.normals, len(self.frame)
         moves = {"depth": normals[:, -1]}
         for place in range(size - 1):
@@ -156,7 +158,7 @@ class Design:
 
     @cached_property
     def _fits(self) -> dict[str, dict[str, _Fit]]:
-        """Best fits by measure and definition, common to all states of the surface."""
+        """Best fits by measure and definition of the error. They are the same for all displacements of the nodes."""
         moves = self._moves()
         return {measure: {definition: self._fit(self.normals[:, -1] ** power, {
             name: move for name, move in moves.items() if name != "curvature" or definition == "rigid_focal"
@@ -174,12 +176,12 @@ class Design:
         raise StatejumpError(code="fit_undetermined", count=len(self.position_m))
 
     def errors(self, displacement_m: Any, measure: str = "normal") -> Errors:
-        """Return the errors for the displacements of the nodes.
+        """Return the errors of the surface for given displacements of its nodes.
 
-        :param displacement_m: (nodes, 3) [m]
+        :param displacement_m: displacements (nodes, 3) [m]
         :param measure: quantity that is squared and averaged: ``normal``, the distance along the normal; ``half_path``,
             half the change of the ray path, for Ruze's formula; ``axial``, the distance along the axis
-        :raises StatejumpError: the measure is unknown, or displacements do not match the nodes
+        :raises StatejumpError: the measure is unknown, or the displacements do not match the nodes
         """
         check_measure(measure)
         displacement = _points("displacement_m", displacement_m, len(self.position_m))
@@ -195,7 +197,7 @@ class Design:
         )
 
     def focal_change_m(self, moves: Mapping[str, Any]) -> np.ndarray:
-        """Return the change of the focal length [m] by the moves of a best fit; NaN: the nodes do not determine it."""
+        """Return the change of the focal length [m] by the moves of a best fit; NaN if nodes do not determine it."""
         if not self.curvature_per_m or "curvature" not in moves:
             return np.full_like(moves["depth"], np.nan)
         return np.asarray(-moves["curvature"] / (4 * self.curvature_per_m**2))  # F = 1/(4 c)
@@ -204,9 +206,9 @@ class Design:
         self, displacement_m: np.ndarray, measure: str
     ) -> tuple[dict[str, np.ndarray], dict[str, dict[str, np.ndarray]]]:
         """Return residuals (..., nodes) [m] by definition, and the moves (...) of each best fit: depth, tilts,
-        curvature, shifts, as far as the nodes determine them.
+        curvature and shifts, as far as the nodes determine them.
 
-        :param displacement_m: (..., nodes, 3) [m]
+        :param displacement_m: displacements (..., nodes, 3) [m]
         """
         weighted = self.normals[:, -1] ** MEASURES[measure] * np.sum(
             self.normals * (displacement_m @ self.frame.T), axis=-1)
@@ -218,12 +220,12 @@ class Design:
         return residual, moves
 
     def zernike_m(self, displacement_m: Any, terms: int | None = None) -> np.ndarray:
-        """Return the coefficients [m] of Noll's Zernike terms 1 to ``terms`` in the error along the axis, by least
+        """Return the coefficients [m] of Noll's Zernike terms 1 to ``terms`` for the error along the axis, by least
         squares over the nodes, in the aperture. The root of the sum of their squares is the RMS over the full circle,
         not over the nodes.
 
-        :param terms: 1 to 36; None: the most of 1, 3, 6, ... 36 (whole orders) that the nodes determine
-        :raises StatejumpError: the nodes are a profile, or determine fewer terms
+        :param terms: 1 to 36; None: the largest of 1, 3, 6, ... 36 (whole orders) that the nodes determine
+        :raises StatejumpError: the nodes form a profile, or determine fewer terms
         """
         if self.profile:
             raise StatejumpError(code="profile_without_zernike")
@@ -256,8 +258,8 @@ def _points(key: str, given: Any, rows: int | None = None) -> np.ndarray:
 
 
 def _frame(position: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """Return lateral axes and axis. Lateral axes follow the axes of space as far as possible; there is only one if
-    nodes and axis lie in one plane."""
+    """Return lateral axes and axis as rows. Lateral axes follow the axes of space as far as possible. If nodes and axis
+    lie in one plane, there is only one lateral axis."""
     across = position - position.mean(axis=0)
     across = across - np.outer(across @ axis, axis)
     spread, directions = np.linalg.svd(across, full_matrices=False)[1:]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rigid motion of a set of nodes, and the rotation of a direction that is fixed to them."""
+"""Rigid motion of a set of nodes, and rotation of a direction that moves with the nodes."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -17,8 +17,8 @@ def rotation_rad(position_m: Any, displacement_m: Any) -> np.ndarray:
     """Return the rotation (..., 3) [rad] of the rigid motion that fits the displacements of nodes best (least squares,
     first order).
 
-    :param position_m: (nodes, 3) [m]
-    :param displacement_m: (..., nodes, 3) [m]
+    :param position_m: positions (nodes, 3) [m]
+    :param displacement_m: displacements (..., nodes, 3) [m]
     :raises StatejumpError: the nodes lie on one line
     """
     position, displacement = (np.asarray(each, dtype=float) for each in (position_m, displacement_m))
@@ -34,12 +34,12 @@ def rotation_rad(position_m: Any, displacement_m: Any) -> np.ndarray:
 
 
 def pointing_rad(position_m: Any, displacement_m: Any, direction: Sequence[float]) -> Any:
-    """Return the pointing error (...) [rad] of a direction that is fixed to the rigid motion of nodes: its angle of
-    rotation.
+    """Return the pointing error (...) [rad] of a direction that moves rigidly with nodes: the angle by which it
+    rotates.
 
-    :param position_m: (nodes, 3) [m]
-    :param displacement_m: (..., nodes, 3) [m]
-    :param direction: direction, of any length
+    :param position_m: positions (nodes, 3) [m]
+    :param displacement_m: displacements (..., nodes, 3) [m]
+    :param direction: the direction, a vector of any length
     :raises StatejumpError: the nodes lie on one line, or the direction is zero
     """
     way = np.asarray(direction, dtype=float)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Repeatability of a structure, in the form of hardware specifications: µm per metre at a quantile of all samples."""
+"""Repeatability of a structure as hardware specifications state it: µm per metre at a quantile of all samples."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from statejump.core.errors import NotAllowed, StatejumpError
 class Repeatability:
     """A quantile of sampled changes of a length, divided by a reference length.
 
-    :param um_per_m: the quantile, µm per metre
+    :param um_per_m: the quantile [µm/m]
     :param low: lower end of its confidence interval (order statistics, for any distribution)
     :param high: upper end; infinite if there are too few samples
     :param share: fraction of the samples below the quantile
@@ -30,12 +30,11 @@ class Repeatability:
 
 
 def repeatability(change_m: Any, length_m: float, share: float = 0.99, confidence: float = 0.95) -> Repeatability:
-    """Return the repeatability of a structure over its cycles.
+    """Return the repeatability of a structure from the changes of a length over many cycles.
 
-    :param change_m: change of a length in each sample of a campaign [m]; signs are ignored, failed samples (NaN) are
-        omitted
+    :param change_m: change of the length in each sample [m]; signs are ignored, failed samples (NaN) are omitted
     :param length_m: reference length, such as the diameter of the aperture [m]
-    :raises StatejumpError: there is no sample, or length or fraction is invalid
+    :raises StatejumpError: there is no sample, or the length or a fraction is invalid
     """
     if not 0 < length_m < np.inf:
         raise NotAllowed("length_m", length_m, code="not_positive", unit="m")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The reflecting surface of a truss over the time of a run of either model."""
+"""The errors of the reflecting surface of a truss over the time of a run, for either model."""
 from __future__ import annotations
 
 import numpy as np
@@ -16,14 +16,14 @@ from statejump.surface.motion import pointing_rad
 def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
     """Return the reference surface of a case and the indices of its nodes.
 
-    :raises StatejumpError: the kind has no surface, or the case has no [reflector]
+    :raises StatejumpError: the kind of case has no surface, or the case has no [reflector]
     """
     found: tuple[Design, np.ndarray] = require(case, ReflectorSurface).surface(case)
     return found
 
 
 def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
-    """Return the surface at every sample of a run of a truss, compared with its reference configuration.
+    """Return the errors of the surface at every sample of a run of a truss, relative to the reference configuration.
 
     :param measure: as for :meth:`~statejump.surface.Design.errors`
     :return: arrays by column: ``time_s``, ``temperature_change_K``, RMS by definition, tilt, focal change (NaN: not

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables of the errors of a surface in one state, and reader of tables of nodes."""
+"""Tables of the errors of a surface in one state, and a reader for tables of nodes."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ Row = tuple[str, str, float]
 
 
 def read_nodes(file: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions and displacements (nodes, 3) [m] of a table.
+    """Return the positions and displacements (nodes, 3) [m] in a table file.
 
     :raises StatejumpError: the file does not exist, a column is missing or unknown, or a cell is not a finite number
     """
@@ -46,7 +46,7 @@ def design_rows(design: Design) -> list[Row]:
 def state_rows(
     design: Design, displacement_m: np.ndarray, measure: str, direction: Sequence[float] | None
 ) -> list[Row]:
-    """Return the errors of the surface for the displacements of its nodes, as rows of a table."""
+    """Return the errors of the surface as rows of a table, for given displacements of its nodes."""
     found = design.errors(displacement_m, measure)
     rows = [(f"RMS, {text}" if name == "design" else f"RMS without {text}", "m", found.rms_m[name])
             for name, text in DEFINITIONS.items()]
@@ -69,7 +69,7 @@ def state_rows(
 
 
 def zernike_rows(design: Design, displacement_m: np.ndarray, terms: int | None) -> list[Row]:
-    """Return Zernike coefficients of the error along the axis; for a profile none, or an error if requested."""
+    """Return Zernike coefficients of the error along the axis; none for a profile, or an error if requested."""
     if design.profile and terms is None:
         return []
     rows = []
@@ -81,7 +81,7 @@ def zernike_rows(design: Design, displacement_m: np.ndarray, terms: int | None) 
 
 
 def _named(way: np.ndarray) -> str:
-    """Return a direction as text: an axis of space by its name, else its components."""
+    """Return a direction as text: the name of the axis of space that it is parallel to, otherwise its components."""
     unit = np.asarray(way) / np.linalg.norm(way)
     for place, name in enumerate("xyz"):
         if abs(abs(unit[place]) - 1) < 1e-12:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Zernike's circle polynomials in the order and normalization of R. J. Noll, J. Opt. Soc. Am. 66, 207 (1976).
 
-Term 1 is 1. Over the unit circle every term has the RMS 1, and the mean product of two terms is 0. Even terms contain
-cos mθ, odd ones sin mθ; θ runs from the first lateral axis to the second.
+Term 1 is 1. Over the unit circle every term has the RMS 1, and the mean product of two different terms is 0. Even terms
+contain cos mθ, odd ones sin mθ; θ runs from the first lateral axis to the second.
 """
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ LEAST_SINGULAR_VALUE = 1e-6
 
 
 def noll(term: int) -> tuple[int, int]:
-    """Return degree n and order m of a term. Terms count from 1. A negative order denotes a term with sin.
+    """Return degree n and order m of a Zernike term. Terms are counted from 1. A negative order means a term with sin.
 
-    :raises StatejumpError: the term does not exist
+    :raises StatejumpError: there is no such term
     """
     if not isinstance(term, int) or term < 1:
         raise NotAllowed("term", term, code="not_positive_integer")
@@ -51,9 +51,9 @@ def zernike(term: int, points: np.ndarray) -> np.ndarray:
 
 
 def fitted(points: np.ndarray, values: np.ndarray, terms: int | None = None) -> np.ndarray:
-    """Return the coefficients of terms 1 to ``terms`` by least squares over points of the unit circle.
+    """Return the coefficients of Zernike terms 1 to ``terms``, by least squares over points of the unit circle.
 
-    :param terms: None: as many whole orders as the points determine
+    :param terms: number of terms; None: as many whole orders as the points determine
     :raises StatejumpError: the points determine fewer terms
     """
     if terms is not None and not (isinstance(terms, int) and 1 <= terms <= MOST):

@@ -106,19 +106,20 @@ class SpringSliderCase(Case):
 
     @property
     def thermal_expansion_per_K(self) -> float:
-        """Coefficient of thermal expansion of the bar [1/K]; with an [expansion], its largest |α|."""
+        """Coefficient of thermal expansion of the bar [1/K]; if the case has a section [expansion], its largest |α|."""
         constant = self.link.thermal_expansion_per_K
         return self.expansion.largest_per_K if self.expansion is not None else 0.0 if constant is None else constant
 
     @cached_property
     def bar_program(self) -> Thermal | MemberProgram:
-        """Temperature program of the bar. With an [expansion], the program of ε/α₀, see
+        """Temperature program of the bar; with a section [expansion] the program ε/α₀ of
+        :mod:`statejump.core.expansion`.
         :mod:`statejump.core.expansion`."""
         return self.thermal if self.expansion is None else followed(self.expansion, self.thermal, self.period_s)
 
     @property
     def turning_changes_K(self) -> tuple[float, ...]:
-        """Temperature changes [K] with the longest and the shortest bar among them: ends of the range, zeros of α."""
+        """Temperature changes [K] at which the bar may be longest or shortest: ends of the range, and zeros of α."""
         coldest, hottest = self.temperature_range_K
         zeros = () if self.expansion is None else self.expansion.zeros_K
         return (coldest, *(change for change in zeros if coldest < change < hottest), hottest)
@@ -142,7 +143,7 @@ class SpringSliderCase(Case):
         return self.joint.friction_coefficient * self.joint.normal_force_N
 
     def clearance_m(self, side: int, temperature_change_K: float) -> float:
-        """Return the clearance [m] on side +1 or -1 at ΔT: stop distance minus pad radius; both expand with the full
+        """Return the clearance [m] on side +1 or -1 at ΔT: stop distance minus pad radius, which expand with the full
         ΔT."""
         joint = self.joint
         start = joint.clearance_plus_m if side > 0 else joint.clearance_minus_m
@@ -151,8 +152,7 @@ class SpringSliderCase(Case):
         return start + (stop - pad) * temperature_change_K
 
     def held_m(self, place_m: float, stiffness_N_per_m: float) -> float:
-        """Return the equilibrium position of the block [m] on a spring that would keep it at ``place_m`` without
-        stops."""
+        """Return the equilibrium position of the block [m] on a spring that holds it at ``place_m`` without stops."""
         joint = self.joint
         inside = min(max(place_m, -joint.clearance_minus_m), joint.clearance_plus_m)
         if joint.stop_stiffness_N_per_m is None:

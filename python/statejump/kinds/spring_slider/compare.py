@@ -22,7 +22,7 @@ COMPARED_EVENTS = ("first_slip", "stop_reached", "stop_left")
 
 
 def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float | None]:
-    """Return the temperature changes [K] of the events of the first cycle, each midway between two samples."""
+    """Return the temperature changes [K] of the events in the first cycle. Each is the mean of two samples."""
     first = slice(0, samples_per_cycle + 1)
     temperature = dem["temperature_change_K"][first]
 
@@ -50,7 +50,7 @@ def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float 
 
 
 def energy_residual(dem: Run) -> float:
-    """Return supplied minus stored minus dissipated energy over the whole DEM run [J]."""
+    """Return supplied minus stored minus dissipated energy [J], over the whole DEM run."""
     return energy_residue_J(
         dem.energy, ("thermal_work_J", "external_work_J"),
         ("elastic_energy_J", "preload_energy_J", "contact_energy_J", "kinetic_energy_J"),
@@ -59,21 +59,20 @@ def energy_residual(dem: Run) -> float:
 
 
 def loop_drift(dem: Run, samples_per_cycle: int, cycles: int) -> float:
-    """Return the largest distance of any later loop from the second one at the same phase [m]."""
+    """Return the largest distance [m] of a later loop from the second loop, at the same phase of the cycle."""
     x = dem["displacement_m"]
     loops = [x[k * samples_per_cycle : (k + 1) * samples_per_cycle + 1] for k in range(1, cycles)]
     return float(np.max(np.abs(np.stack(loops) - loops[0])))
 
 
 def first_cycle_events(case: SpringSliderCase, run: Run) -> dict[str, float | None]:
-    """Return the temperature change [K] of the first event of each compared kind in the first cycle; None: it did not
-    happen."""
+    """Return ΔT [K] of the first event of each compared kind in the first cycle; None if it did not happen."""
     found = {kind: run.events.first(kind, case.period_s) for kind in COMPARED_EVENTS}
     return {kind: None if event is None else event.temperature_change_K for kind, event in found.items()}
 
 
 def _jump_row(case: SpringSliderCase, first: Run, second: Run) -> Quantity:
-    """Compare state jumps, or, if the program does not return, displacements at its end."""
+    """Compare the state jumps, or the displacements at the end if the program does not return to ΔT = 0."""
     tolerance = case.tolerance
     # The allowed error of a jump that is zero uses the scale of jumps, f/(k + k_p).
     stiffness = stable_step.link_stiffness(case) + case.joint.preload_stiffness_N_per_m
@@ -141,7 +140,7 @@ def difference(case: SpringSliderCase, first: Run, second: Run) -> list[Quantity
 
 
 def outcomes(case: SpringSliderCase, run: Run) -> dict[str, float]:
-    """Return jump, event temperatures, work of friction and largest axial force; NaN: it did not happen."""
+    """Return jump, event temperatures, work of friction and largest axial force; NaN if an event did not happen."""
     exact = run.native is not None
     if exact:
         columns, force = run.native.sample(np.array([case.duration_s])), run.native.largest_axial_force_N
@@ -177,7 +176,7 @@ def why_missed(case: SpringSliderCase, exact: Run, dem: Run, rows: Sequence[Quan
 
 
 def _events(case: SpringSliderCase, dem: Run) -> list[str]:
-    """Return reasons for a shift of events: the distance of samples and the compliance of contacts."""
+    """Return reasons why event temperatures differ: the interval of samples, and the compliance of contacts."""
     found, allowed = [], case.tolerance.event_temperature_K
     between = float(np.abs(np.diff(dem["temperature_change_K"])).max())
     if between > allowed:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the state jump of a ``spring_slider`` case: exact jumps, and the closed form where it applies."""
+"""Control of the state jump of a ``spring_slider`` case: exact jumps, and the closed form where it is valid."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ class Jump:
 
 
 def jump_of(case: SpringSliderCase) -> Jump:
-    """Return the jump of a case. :raises StatejumpError: a changed case is out of range"""
+    """Return the jump of a case. :raises StatejumpError: a value of the case is out of range"""
     with engine():
         path = reduced.solve(case, np.array([0.0]))
     # If the block does not slide in the first cycle, the second cycle is equal to the first.
@@ -62,12 +62,12 @@ def jump_of(case: SpringSliderCase) -> Jump:
 
 
 def closed_form_m(path: _engine.SpringSliderPath) -> float:
-    """Return the jump of a path that ends sliding at ΔT = 0 and did not start at a stop [m]."""
+    """Return the jump [m] in closed form. It holds if the path ends sliding at ΔT = 0 and did not start at a stop."""
     return abs(path.model.state_jump_after_slide_m(path.segments[-1].direction))
 
 
 def closed_force_N(case: SpringSliderCase) -> float:
-    """Return the closed form of the jump times k + k_p [N]: f, or the change of friction from start to end."""
+    """Return the closed-form jump times k + k_p [N]: friction limit f, or change of friction from start to end."""
     with engine():
         path = reduced.solve(case, np.array([0.0]))
     direction = path.segments[-1].direction or -1
@@ -76,7 +76,7 @@ def closed_force_N(case: SpringSliderCase) -> float:
 
 @dataclass(frozen=True)
 class Spring:
-    """The smallest preload spring that keeps the jump at or below a value."""
+    """The softest preload spring that keeps the jump at or below a value."""
 
     stiffness_N_per_m: float
     jump_m: float  # solved with the spring
@@ -84,7 +84,7 @@ class Spring:
 
 
 def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
-    """Return the softest spring with a jump of at most ``wanted_m``; None if the stiffest allowed one is too soft.
+    """Return the softest spring with a jump of at most ``wanted_m``; None if the stiffest allowed spring is too soft.
 
     Without a preload force against a stop, the jump never grows with k_p: the block slides less far and returns
     earlier. With such a force, the jump grows until the stop is unloaded, then falls. If the jump without a spring
@@ -166,11 +166,11 @@ def control(
     case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
-    """Sweep the parameters, search the smallest preload spring and, if requested, check it with the DEM.
+    """Sweep the parameters, search for the softest sufficient preload spring and, if requested, check it with the DEM.
 
-    :param jump_below: largest allowed jump [m]; None: half of that of the case
+    :param jump_below: largest allowed jump [m]; None: half of the jump of the case
     :param runs: must be None, because there is one exact path
-    :param choices: must be empty, because a case has one jump
+    :param choices: must be empty, because the case has only one jump
     :raises StatejumpError: invalid input, or a run failed
     """
     check_wanted(jump_below, "m")

@@ -15,8 +15,7 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 
 
 def number_of_steps(case: SpringSliderCase) -> int:
-    """Return the number of steps of the run, a multiple of the number of samples, so that the last sample is the
-    end."""
+    """Return the number of time steps, a multiple of the number of samples, so that the last sample is at the end."""
     wanted = case.dem_settings.time_step_s
     if wanted is None:
         wanted = case.dem_settings.time_step_fraction * stable_step.stable_time_step(case)
@@ -25,7 +24,7 @@ def number_of_steps(case: SpringSliderCase) -> int:
 
 
 def time_step(case: SpringSliderCase) -> float:
-    """Return the time step [s]: the requested one, reduced so that a whole number of steps fills the program."""
+    """Return the time step [s]: the requested step, reduced so that a whole number of steps fills the program."""
     return case.duration_s / number_of_steps(case)
 
 
@@ -46,8 +45,7 @@ def dem_input(case: SpringSliderCase) -> dict[str, Any]:
 
 
 def start_displacement(case: SpringSliderCase) -> float:
-    """Return the start position of the block [m]: that of the reduced model, plus the Hertz depth in a touching
-    stop."""
+    """Return the start position of the block [m]: that of the reduced model, plus the Hertz depth in a touched stop."""
     joint = case.joint
     model = reduced.spring_slider(case)
     if joint.stop_stiffness_N_per_m is not None:
@@ -67,8 +65,8 @@ def start_displacement(case: SpringSliderCase) -> float:
 
 
 def start_slide(case: SpringSliderCase) -> float:
-    """Return the slide [m] with which the contact of the floor carries the friction at the start; 0 for a joint with
-    play, whose friction does not come from the floor."""
+    """Return the slide [m] at which the contact with the floor carries the friction of the start. It is 0 for a joint
+    with play, whose friction does not come from the floor."""
     if case.joint.play_m:
         return 0.0
     load_N = reduced.spring_slider(case).start_load_N

@@ -69,7 +69,7 @@ def _dense(path: _engine.SpringSliderPath, run: Run) -> dict[str, np.ndarray]:
 
 
 def _mark_stages(panel: Axes, path: _engine.SpringSliderPath) -> None:
-    """Shade the stages over time. Name the stages of the first cycle that are wide enough."""
+    """Shade the stages over time, and name those stages of the first cycle that are wide enough."""
     end = path.segments[-1].end_time_s
     spans: list[list[Any]] = []
     for segment in path.segments:
@@ -122,7 +122,7 @@ def _mark_jump(panel: Axes, case: SpringSliderCase, path: _engine.SpringSliderPa
 
 
 def drawn(found: RestSets, axes: Axes | None = None) -> Figure:
-    """Draw the positions over the temperature; into given axes, or into a new figure."""
+    """Draw the positions of the block over the temperature, into given axes or into a new figure."""
     with style():
         if axes is None:
             _, axes = panels(1, 1, (5.5, 4.2))

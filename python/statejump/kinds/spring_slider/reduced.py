@@ -59,8 +59,8 @@ def warnings(case: SpringSliderCase) -> list[str]:
 def solve(case: SpringSliderCase, times_s: np.ndarray | None = None) -> _engine.SpringSliderPath:
     """Return the exact path of a case: segments, events, state jump.
 
-    :param times_s: times that the caller needs. The path keeps their cycles, the first two and the last one; None: all
-        cycles
+    :param times_s: times that the caller needs. The path keeps only the cycles of these times, and the first two and
+        the last cycle; None: all cycles
     """
     wanted = None if is_whole(case) else times_s
     if case.expansion is None:
@@ -75,8 +75,8 @@ def is_whole(case: SpringSliderCase) -> bool:
 
 
 def sample_times(case: SpringSliderCase) -> np.ndarray:
-    """Return evenly spaced times [s], as many as the samples of the DEM run. For a very long history, return only those
-    of the first and the last cycles."""
+    """Return evenly spaced times [s], as many as the DEM run has samples. A very long history has only the times of the
+    first and the last cycles."""
     samples, cycles = case.dem_settings.samples_per_cycle, case.thermal.cycles
     if is_whole(case):
         return np.linspace(0, case.duration_s, samples * cycles + 1)
@@ -87,7 +87,7 @@ def sample_times(case: SpringSliderCase) -> np.ndarray:
 
 
 def cycles_shown(case: SpringSliderCase) -> int:
-    """Return how many cycles at each end a history keeps if it omits those between."""
+    """Return how many cycles a history keeps at each of its ends, if it omits the cycles between."""
     return min(max(WHOLE_HISTORY // (10 * case.dem_settings.samples_per_cycle), 1), case.thermal.cycles // 2)
 
 
@@ -102,7 +102,7 @@ def run(case: SpringSliderCase, on_progress: OnProgress) -> Run:
 
 
 def _without_what_is_between(case: SpringSliderCase, run: Run) -> Run:
-    """Return a run without the events of omitted cycles, with a warning about the omission."""
+    """Remove the events of the cycles that a run omits, and add a warning about the omission."""
     shown, cycles = cycles_shown(case), case.thermal.cycles
     first, last = shown * case.period_s, (cycles - shown) * case.period_s
     events = Events([event for event in run.events if event.time_s <= first or event.time_s > last])
@@ -112,7 +112,7 @@ def _without_what_is_between(case: SpringSliderCase, run: Run) -> Run:
 
 
 def quick(case: SpringSliderCase) -> Run:
-    """Return the exact path as a run of two samples: start and end."""
+    """Return the exact path as a run with only two samples: start and end."""
     return _run_at(case, np.array([0.0, case.duration_s]))
 
 

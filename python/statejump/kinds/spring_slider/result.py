@@ -34,7 +34,7 @@ def names(case: SpringSliderCase) -> dict[str, list[str]]:
 
 
 def scene(case: SpringSliderCase) -> dict[str, Any]:
-    """Return bar, block and slot for drawings. The height of the block is that with unloaded pads."""
+    """Return bar, block and slot for drawings. The block is as high as with unloaded pads."""
     link, joint = case.link, case.joint
     x = drawing.ref("history/displacement_m")
     root, radius = -link.stress_free_length_m, joint.pad_radius_m
@@ -138,7 +138,7 @@ def _run(
 
 
 def _summary(case: SpringSliderCase, jump_m: float, there_m: float) -> dict[str, float]:
-    """Return the state jump (NaN if the program does not return) and the displacement at the last row of the program.
+    """Return the state jump, and the displacement at the last row. The jump is NaN if the program does not return.
 
     :param jump_m: displacement at the end minus that at the start
     :param there_m: displacement at the last row of the program minus that at the start

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stable time step of the spring-slider scene.
 
-``_engine.critical_time_step_s`` returns the stability limit of leapfrog for one oscillator. The slider moves along two
-axes:
+``_engine.critical_time_step_s`` returns the stability limit of leapfrog for one oscillator. The slider is an oscillator
+along two axes:
 
 - across the floor (y): the floor's normal stiffness k_n, and k_t of a touching stop;
 - along the bar (x): the link, k_t of the floor and k_n of a stop.
 
 Contacts have the Hertz-Mindlin stiffness at their largest force. For the floor this is twice the normal force, because
-a sudden load overshoots to twice its value. For a stop it is twice the force that would hold thermal overlap and
-preload rigidly, because of impact. A stop with a given stiffness has that stiffness. The dashpots of all contacts along
-an axis are added.
+a sudden load overshoots to twice its value. Because of impact, the force of a stop is twice the force that would hold
+thermal overlap and preload rigidly. A stop with a given stiffness keeps that stiffness. The dashpots of all contacts
+along an axis are added.
 """
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 
 def tip_mass(case: SpringSliderCase) -> float:
-    """Mass at the tip [kg]: the slider plus a third of the bar (exact for a uniform rod)."""
+    """Mass at the tip of the bar [kg]: the slider plus a third of the bar (exact for a uniform rod)."""
     link = case.link
     bar = link.density_kg_per_m3 * link.cross_section_area_m2 * link.stress_free_length_m
     return bar / 3 + case.dem_settings.slider_mass_kg
 
 
 def largest_stop_force(case: SpringSliderCase) -> float:
-    """Force [N] of a rigid stop that holds the whole thermal overlap and the preload."""
+    """Largest force [N] of a rigid stop that holds the whole thermal overlap and the preload."""
     link, stiffness, preload = case.link, link_stiffness(case), case.joint.preload_force_N
     force = 0.0
     for change in case.turning_changes_K:
@@ -51,7 +51,7 @@ def link_stiffness(case: SpringSliderCase) -> float:
 
 
 def contact_stiffness(case: SpringSliderCase, force_N: float) -> tuple[float, float]:
-    """Tangent stiffnesses k_n, k_t [N/m] of one pad under a force [N]."""
+    """Normal and tangential stiffness k_n, k_t [N/m] of one pad under a normal force [N]."""
     joint = case.joint
     hertz = physics.hertz_stiffness_N_per_m15(
         physics.effective_young_modulus_Pa(joint.young_modulus_Pa, joint.poisson_ratio), joint.pad_radius_m

@@ -3,8 +3,8 @@
 
 The bar pushes with k_T (x_T - x), a preload spring pulls back with P + k_p x, and friction carries up to f. The block
 therefore rests wherever |k_T x_T - P - (k_T + k_p) x| <= f. This is a segment of half-length f/(k_T + k_p) about the
-position of zero force, within the stops. Where it passes a stop, the stop carries the rest of the force. At the
-reference temperature the length of the segment is the largest possible state jump.
+position of zero force, within the stops. If the segment extends beyond a stop, the stop carries the rest of the force.
+At the reference temperature the length of the segment is the largest possible state jump.
 """
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class RestSets:
-    """Rest sets of the block, coldest first. ``largest_jump_m`` belongs to the reference temperature."""
+    """Rest sets of the block, sorted by temperature. ``largest_jump_m`` holds at the reference temperature."""
 
     case: SpringSliderCase
     friction_force_N: float
@@ -57,7 +57,7 @@ class RestSets:
         return next(part.length_m for part in self.segments if part.temperature_change_K == 0)
 
     def frame(self) -> pandas.DataFrame:
-        """Return a row per temperature, units in the names of the columns."""
+        """Return one row per temperature, with units in the column names."""
         rows = [(*astuple(part), part.length_m) for part in self.segments]
         return libraries.frame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
 
@@ -94,7 +94,7 @@ class RestSets:
 
 
 def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:
-    """Return the rest set at one temperature, with the clearances of the reference temperature."""
+    """Return the rest set at one temperature, for the clearances at the reference temperature."""
     link, joint = case.link, case.joint
     strain = case.thermal_strain(temperature_change_K)
     length = link.stress_free_length_m * (1 + strain)
@@ -108,7 +108,7 @@ def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_
 
 
 def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int | None = None) -> RestSets:
-    """Return the rest sets at the ends of the program's range and at ΔT = 0, or at evenly spaced temperatures."""
+    """Return the rest sets at both ends of the temperature range and at ΔT = 0, or at evenly spaced temperatures."""
     coldest, hottest = case.temperature_range_K
     changes: Sequence[float] = sorted({coldest, 0.0, hottest})
     if temperatures is not None:
@@ -119,7 +119,7 @@ def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int
 def statics(case: SpringSliderCase, friction_coefficient: float | None = None) -> RestSets:
     """Return the rest positions of the block.
 
-    :param friction_coefficient: replaces that of the case
+    :param friction_coefficient: friction coefficient to use instead of that of the case [-]
     """
     mu = case.joint.friction_coefficient if friction_coefficient is None else friction_coefficient
     return rest_sets(case, mu * case.joint.normal_force_N)

@@ -27,8 +27,7 @@ LABELS = {
 
 
 def describe(case: SpringSliderCase) -> list[str]:
-    """Return the description of the case in sentences. The temperature program is described by code common to all
-    kinds."""
+    """Describe the case in sentences. Code common to all kinds describes the temperature program."""
     link, joint = case.link, case.joint
     minus, plus = joint.clearance_minus_m, joint.clearance_plus_m
     both = f"{text(minus, 'm')} and {text(plus, 'm')} away"
@@ -65,7 +64,7 @@ def _start(case: SpringSliderCase) -> str:
 
 
 def summary_lines(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return the lines that a command prints: exact events of the first cycle and, for a single model, the jump."""
+    """Return the lines that a command prints: exact events of the first cycle and, for one model alone, the jump."""
     if len(runs) > 1:
         return []
     found: list[Shown | str] = []
@@ -89,7 +88,7 @@ def summary_lines(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown
 
 
 def event_reason(case: SpringSliderCase, event: Event, model: str, runs: Mapping[str, Run]) -> str:
-    """Return the reason why only one of the models has an event; "" if it is unknown."""
+    """Return the reason why only one of the models reports an event; "" if the reason is unknown."""
     if event.kind in ("stop_unloaded", "force_sign_change", "cycle_end", "play_opened", "play_closed") and (
             model == "reduced"):
         return "a stage of the reduced model; no contact of the DEM changes its state"

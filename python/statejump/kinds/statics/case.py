@@ -3,7 +3,7 @@
 
 Forces that depend on temperature, F0 + rate dT, are evaluated at the listed temperatures. Friction cones are convex, so
 a position that is at rest at the first and the last temperature is at rest between them. Both ends of the range
-therefore suffice for the intersection. The union covers the listed temperatures only.
+therefore suffice for the intersection. The union of rest sets covers only the listed temperatures.
 """
 from __future__ import annotations
 
@@ -84,9 +84,9 @@ class Force(Section):
 
 
 def read_forces(name: str, value: Any) -> list[Force]:
-    """Return the forces of ``[[force]]``. They need no names, so messages number them.
+    """Return the forces of ``[[force]]``. Forces may lack names, so messages number them.
 
-    :raises StatejumpError: one failure, without the file's name
+    :raises StatejumpError: the first failure, without the file's name
     """
     given = [value] if isinstance(value, Mapping) else value
     if not isinstance(given, list) or not given or not all(isinstance(table, Mapping) for table in given):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of rest sets: positions of the centre of a component, with the forces that hold it."""
+"""Pictures of rest sets: positions of the centre of a component, with the forces that hold the component there."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ def drawn(statics: Statics, axes: Axes | None = None) -> Figure:
 
 
 def planar(solutions: Sequence[Statics]) -> Figure:
-    """Draw positions on a curve, one panel per friction coefficient of one case."""
+    """Draw positions on a curve, with one panel for each friction coefficient of a case."""
     case, count = solutions[0].case, len(solutions)
     slot = case.joint.type == "slot"
     with style():
@@ -130,7 +130,7 @@ def _cone(panel: Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: floa
 
 
 def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
-    """Draw a journal: the closed curve of its centre, rest arcs, forces, and a friction cone at the end of an arc."""
+    """Draw a journal: the curve of its centre, rest arcs, forces, and a friction cone at the end of an arc."""
     assert case.joint.clearance_m is not None
     c = case.joint.clearance_m * MICRO
     if statics.curve is None:
@@ -183,7 +183,7 @@ def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
 
 
 def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
-    """Draw a block in a slot: its centre between the stops, in the plane of axis and force."""
+    """Draw a block in a slot: positions of its centre between the stops, in the plane of axis and force."""
     assert case.joint.clearance_m is not None
     c = case.joint.clearance_m * MICRO
     panel.plot([-c, c], [0, 0], color="0.55", linewidth=1.2, linestyle=(0, (4, 3)), zorder=1.5)
@@ -219,7 +219,7 @@ def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
 
 
 def spatial(statics: Statics) -> Figure:
-    """Draw the shaded surface of positions in space with the rest sets on it."""
+    """Draw the shaded surface of possible positions in space with the rest sets on it."""
     with style():
         drawing = Drawing(figsize=(7.0, 6.4), dpi=160)  # resolution of the picture inside the SVG
         panel = drawing.add_axes((0.0, 0.08, 1.0, 0.84), projection="3d", computed_zorder=False)
@@ -230,7 +230,7 @@ def spatial(statics: Statics) -> Figure:
 
 
 def _space(panel: Any, statics: Statics) -> list[Any]:
-    """Draw positions in space into three-dimensional axes; return the entries of the legend."""
+    """Draw possible positions in space into three-dimensional axes; return the entries of the legend."""
     polygons = [polygon * MICRO for polygon in statics.pieces["polygons_m"]]
     points = np.concatenate(polygons)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -251,7 +251,7 @@ def _space(panel: Any, statics: Statics) -> list[Any]:
 
 
 def _viewpoint(statics: Statics, middle: np.ndarray) -> tuple[float, float]:
-    """Return azimuth and elevation [°] of a view from outside, slightly beside the middle of the rest set."""
+    """Return azimuth and elevation [°] of a view from outside, slightly to the side of the middle of the rest set."""
     forces = np.array([load.force_N for load in statics.loads])
     mean = (forces / np.linalg.norm(forces, axis=1)[:, None]).sum(axis=0)
     centre = np.mean([part["representative_m"] for part in statics.any["parts"]] or [mean], axis=0) * MICRO
@@ -261,7 +261,7 @@ def _viewpoint(statics: Statics, middle: np.ndarray) -> tuple[float, float]:
 
 
 def _shaded_surface(panel: Any, statics: Statics, polygons: list[np.ndarray], view: np.ndarray) -> list[Any]:
-    """Draw the positions in space, coloured by the forces that hold them; return the entries of the legend."""
+    """Draw possible positions in space, coloured by the forces that hold them; return the entries of the legend."""
     counts = np.array(statics.pieces["polygon_forces"])
     every = len(statics.loads)
     colours = np.where((counts == 0)[:, None], _rgb(SURFACE), np.where(
@@ -282,7 +282,7 @@ def _shaded_surface(panel: Any, statics: Statics, polygons: list[np.ndarray], vi
 
 
 def _rest_sets(panel: Any, statics: Statics, middle: np.ndarray, view: np.ndarray) -> list[Any]:
-    """Draw the outlines of the rest sets and their two farthest positions; return the entries of the legend."""
+    """Draw the outlines of the rest sets and the two positions farthest apart; return the entries of the legend."""
     for part in statics.any["parts"]:
         line = part["points_m"] * MICRO
         if len(line):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of rest sets: JSON with every number, a ParaView file of positions in space."""
+"""Files of rest sets: JSON with all numbers, and a ParaView file for positions in space."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -57,8 +57,8 @@ def write_statics_json(statics: Statics, folder: Path) -> Path:
 def write_vtp(statics: Statics, folder: Path) -> Path:
     """Write ``<case>.vtp`` for ParaView: the surface of positions, cut along the rest sets.
 
-    Cell arrays: ``stable`` (1 if at least one force allows rest), ``forces`` (number of such forces). Point array:
-    ``cone_angle_rad``, the smallest angle(-F, N) over the forces.
+    Arrays of cells are ``stable`` (1 if at least one force allows rest) and ``forces`` (number of such forces). That of
+    points is ``cone_angle_rad``, the smallest angle between -F and normal N over all forces F.
     """
     target = folder / f"{statics.case.name}.vtp"
     try:

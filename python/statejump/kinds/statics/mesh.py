@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangle meshes of positions, of a cylinder in its bore or from a file, and their normals."""
+"""Triangle meshes of possible positions, either of a cylinder in its bore or from a file, and their normals."""
 from __future__ import annotations
 
 from math import cos, pi, sin
@@ -15,7 +15,7 @@ SIDES = 96  # sides of the cylinder of positions
 
 
 def can_mesh(clearance_m: float, axial_play_m: float) -> _engine.RestMesh:
-    """Return the positions of the centre of a cylinder in its bore: wall and two discs, each with its own normals."""
+    """Return the surface of the centre of a cylinder in its bore: wall and two discs, each with its own normals."""
     vertices: list[tuple[float, float, float]] = []
     normals: list[tuple[float, float, float]] = []
     triangles: list[tuple[int, int, int]] = []
@@ -57,9 +57,9 @@ class MeshUnusable(StatejumpError):
 def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     """Read the mesh of a case through VTK: STL, OBJ, PLY or VTP. Coincident points are merged.
 
-    A relative path begins in the folder of the case file.
+    A relative path refers to the folder of the case file.
 
-    :raises StatejumpError: it cannot be read, or has no triangles
+    :raises StatejumpError: the mesh cannot be read, or has no triangles
     """
     joint, name = case.joint, case.joint.mesh_file
     assert name is not None and joint.mesh_unit_m is not None
@@ -90,7 +90,7 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
 
 
 def vertex_normals(mesh: _engine.RestMesh) -> np.ndarray:
-    """Return unit normals at the vertices. For a mesh without normals the engine computes mean normals."""
+    """Return unit normals at the vertices. If the mesh has no normals, the engine computes mean normals."""
     if len(mesh.normals):
         return mesh.normals / np.linalg.norm(mesh.normals, axis=1)[:, None]
     points, triangles = mesh.vertices_m, np.array(mesh.triangles)

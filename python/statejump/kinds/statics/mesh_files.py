@@ -20,7 +20,7 @@ READERS: dict[str, Any] = {
 
 
 def triangles_of(path: Path) -> Any:
-    """Return the surface of a file as triangles of VTK; empty if VTK cannot read it."""
+    """Return the surface in a file as triangles of VTK; empty if VTK cannot read the file."""
     reader = READERS[path.suffix.lower()]()
     reader.SetFileName(str(path))
     triangulate = vtkTriangleFilter()

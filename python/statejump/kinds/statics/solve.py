@@ -35,10 +35,10 @@ NOWHERE = "no position holds under every force: the joint moves from one to the 
 
 @dataclass(frozen=True)
 class Statics:
-    """Rest sets of a case: one per force, the union (``any``), the intersection (``all``).
+    """Rest sets of a case: one per force, their union (``any``) and their intersection (``all``).
 
-    A set is a dict: separate ``parts``, its ``length_m`` and ``area_m2``, its largest distance ``diameter_m``, which
-    bounds every state jump, and two positions at this distance, ``farthest_m``.
+    A set is a dict: its separate ``parts``, ``length_m`` and ``area_m2``; ``diameter_m``, the largest distance of two
+    of its positions, which bounds every state jump; and ``farthest_m``, two positions at this distance.
 
     :param curve: curve of the centre of a journal in a lobed bearing
     :param mesh: surface of the positions in space, for pictures
@@ -56,14 +56,14 @@ class Statics:
     pieces: Mapping[str, Any] = field(default_factory=dict)
 
     def named(self) -> list[tuple[str, dict[str, Any]]]:
-        """Return all sets with their names; union and intersection only of several forces."""
+        """Return all sets with their names. Union and intersection are included only if there are several forces."""
         sets = [(load.name, found) for load, found in zip(self.loads, self.each)]
         if len(sets) > 1:
             sets += [("union: any force", self.any), ("intersection: every force", self.all)]
         return sets
 
     def frame(self) -> pandas.DataFrame:
-        """Return one row per part of every set, with units in the column names; an empty set has a row without numbers.
+        """Return one row per part of every set, with units in the column names. An empty set has a row without numbers.
         ``set_diameter_m`` is the diameter of the whole set, the largest possible jump."""
         rows = []
         for name, found in self.named():
@@ -84,7 +84,7 @@ class Statics:
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rest sets.
 
-        :param axes: axes to draw into, three-dimensional for positions in space; None: a new figure
+        :param axes: axes to draw into, three-dimensional ones for positions in space; None: a new figure
         :return: the figure; matplotlib's backend does not change
         """
         return _DRAWN(self, axes)
@@ -95,7 +95,7 @@ class Statics:
         return [Shown(title, HEADINGS, self._rows(), left=("force",)), *self._notes()]
 
     def _rows(self) -> list[tuple[str, ...]]:
-        """Return every set and, if it has several parts, every part, as cells of ``HEADINGS``."""
+        """Return one row of ``HEADINGS`` for every set, and one for each of its parts if it has several."""
         found: list[tuple[str, ...]] = []
         for name, one in self.named():
             parts = one["parts"]
@@ -106,7 +106,7 @@ class Statics:
         return found
 
     def _notes(self) -> list[str]:
-        """Return notes on the rest sets that the table does not contain."""
+        """Return notes on the rest sets that their table does not show."""
         found = []
         if not self.all["parts"] and len(self.loads) > 1:
             found.append(NOWHERE)
@@ -118,7 +118,7 @@ class Statics:
     def write(self, folder: Path) -> list[Path]:
         """Write ``statics.json``, the picture and, for positions in space, a ParaView file; return their paths.
 
-        On a curve the picture has a panel for each further friction coefficient of the case.
+        The picture of positions on a curve has a panel for each further friction coefficient of the case.
         """
         return _WRITTEN(self, folder)
 
@@ -149,7 +149,7 @@ def _angle(part: dict[str, Any]) -> str:
 def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Statics:
     """Return the rest sets of a case.
 
-    :param friction_coefficient: replaces that of the case
+    :param friction_coefficient: friction coefficient to use instead of that of the case [-]
     :raises NotAllowed: the friction coefficient is invalid
     :raises StatejumpError: the mesh of the case is unusable
     """
@@ -189,7 +189,7 @@ def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Stati
 
 
 def cone_angles(statics: Statics) -> np.ndarray:
-    """Return the smallest angle(-F, N) [rad] over the forces, for every corner of every polygon in turn."""
+    """Return the smallest angle of -F and normal N [rad] over all forces F, for each corner of each polygon."""
     assert statics.mesh is not None
     polygons = statics.pieces["polygons_m"]
     points = np.concatenate(polygons)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Converts the items of a truss, which refer to each other by name, to arrays.
 
-Vectors have three components; the third is 0 in planar trusses. Items are numbered as in the file.
-Index -1 stands for ground.
+Vectors have three components; the third is 0 in planar trusses. Items are numbered as in the file. Index -1 means the
+ground.
 """
 from __future__ import annotations
 
@@ -58,8 +58,8 @@ def names(items: Sequence[Item]) -> Sequence[str]:
 
 
 def given_or(given: np.ndarray, other: np.ndarray | float) -> np.ndarray:
-    """Return numbers of items, with a replacement for missing ones (NaN). Do not write to the result, because it may be
-    the argument itself."""
+    """Return numbers of items in which missing numbers (NaN) are replaced. The result may be the argument itself, so do
+    not write to it."""
     none = np.isnan(given)
     if none.all():
         return np.broadcast_to(other, given.shape)
@@ -67,7 +67,7 @@ def given_or(given: np.ndarray, other: np.ndarray | float) -> np.ndarray:
 
 
 def said(items: Sequence[Any], key: str) -> np.ndarray:
-    """Return which items (n,) have a number or a vector for a key."""
+    """Return for every item (n,) whether it has a number or a vector for a key."""
     if not isinstance(items, ItemColumns):
         return np.array([getattr(item, key) is not None for item in items], dtype=bool)
     given = ~np.isnan(items.numbers(key))
@@ -75,7 +75,7 @@ def said(items: Sequence[Any], key: str) -> np.ndarray:
 
 
 def having(items: Sequence[Any], key: str, text: str) -> np.ndarray:
-    """Return which items (n,) have this text for a key, or a list that contains it."""
+    """Return for every item (n,) whether a key has this text, or is a list that contains it."""
     if isinstance(items, ItemColumns):
         return items.texts(key).has(text)
     return np.array([text == value if isinstance(value, str) else text in (value or ())
@@ -83,8 +83,7 @@ def having(items: Sequence[Any], key: str, text: str) -> np.ndarray:
 
 
 def vectors(items: Sequence[Item], key: str, dimension: int) -> np.ndarray:
-    """Return a vector of every item (n, 3) from 2 or 3 numbers each; zero if it is missing. Do not write to the
-    result."""
+    """Return vectors (n, 3) of items from 2 or 3 numbers each; a missing vector is zero. Do not write to the result."""
     if isinstance(items, ItemColumns):
         given = items.numbers(key)
         none = np.isnan(given)
@@ -103,7 +102,7 @@ def vectors(items: Sequence[Item], key: str, dimension: int) -> np.ndarray:
 
 
 def in_space(given: Sequence[float] | None, dimension: int) -> np.ndarray:
-    """Return a vector (3,) of 2 or 3 numbers; zero if there is none."""
+    """Return a vector (3,) from 2 or 3 numbers; a missing vector becomes zero."""
     return np.array([*(given or (0.0,) * dimension), *(0.0,) * (3 - dimension)])
 
 
@@ -126,7 +125,7 @@ def distances(position_m: np.ndarray, pairs: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class References:
-    """Indices of the names in a case. References must be valid: ``checks`` verifies them when a case is read."""
+    """Converts names in a case to indices. All names must exist, which ``checks`` verifies when a case is read."""
 
     dimension: int
     position_m: np.ndarray  # (n, 3) of the nodes
@@ -151,13 +150,13 @@ class References:
 
 
 def indices(items: Sequence[Any], key: str, among: ItemIndex) -> np.ndarray:
-    """Return the index of the item that a key of every item names (items,); GROUND if it names none."""
+    """Return, for every item, the index of the item that its key names (items,); GROUND if the key is missing."""
     return among.of(items, key)
 
 
 def pairs(items: Sequence[Any], key: str, among: ItemIndex) -> np.ndarray:
-    """Return the indices of the one or two items that a key of every item names (items, 2); GROUND for a missing
-    second."""
+    """Return, for every item, the indices of the one or two items that its key names (items, 2); GROUND for a missing
+    second name."""
     found = np.full((len(items), 2), GROUND, dtype=np.int32)
     if len(items):
         given = among.of(items, key)[:, :2]
@@ -167,12 +166,12 @@ def pairs(items: Sequence[Any], key: str, among: ItemIndex) -> np.ndarray:
 
 def arrays_of(made: type[ArraysType], model: type[Item], items: Sequence[Any], known: References, **own: Any
               ) -> ArraysType:
-    """Return items as a dataclass of arrays. A field has the name of a key and its values; ``names`` has the names of
-    the items.
+    """Return items as a dataclass of arrays. Each field has the values of the key of its name; ``names`` has the names
+    of the items.
 
     :param made: the dataclass
-    :param model: class of an item
-    :param own: arrays of fields that differ from the given keys
+    :param model: class of the items
+    :param own: arrays for fields that are not simply the values of a key
     """
     given = {field.name: names(items) if field.name == "names" else _of_key(field.name, model, items, known)
              for field in fields(made) if field.name not in own}  # type: ignore[arg-type]  # it is a dataclass
@@ -180,7 +179,7 @@ def arrays_of(made: type[ArraysType], model: type[Item], items: Sequence[Any], k
 
 
 def _of_key(key: str, model: type[Item], items: Sequence[Any], known: References) -> Any:
-    """Return the values of a key: indices for names of nodes, links and programs, unit vectors for axes."""
+    """Return the values of a key: indices for names of nodes, links and programs; unit vectors for axes."""
     rule = rule_of(fields_of(model)[key])
     if key == "program":
         return known.programs_of(items)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases of kind ``truss``: sections and keys (:mod:`.sections`), their checks, and the truss as arrays."""
+"""Cases of kind ``truss``: their checks, and their conversion to arrays; :mod:`.sections` has sections and keys."""
 from __future__ import annotations
 
 from functools import cached_property
@@ -25,8 +25,8 @@ class TrussCase(TrussSections):
         return resolve(self)
 
     def resolve(self) -> ResolvedTruss:
-        """Return the truss as arrays: indices instead of names, defaults filled in, axes of length 1. Computed once; do
-        not write to it."""
+        """Return the truss as arrays: indices instead of names, defaults filled in, axes of length 1. The result is
+        cached, so do not write to it."""
         return self._resolved
 
     @property
@@ -39,7 +39,7 @@ class TrussCase(TrussSections):
 
 
 def implausible(truss: ResolvedTruss) -> tuple[str, ...]:
-    """Return one sentence for each kind of value, for its worst item."""
+    """Return one sentence for each kind of implausible value, about the item with the worst value."""
     links = truss.links
     largest_K = np.abs(truss.temperature_ranges_K).max(axis=1)
     found = list(moduli("link", links.names, links.young_modulus_Pa))

@@ -17,7 +17,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 
 def check_geometry(truss: ResolvedTruss) -> None:
-    """Raise StatejumpError for the first fault in the shape of a truss whose references are valid."""
+    """Raise StatejumpError for the first fault in the geometry of a truss whose references are valid."""
     ranges_K = truss.temperature_ranges_K
     check_lengths(truss, "link", truss.links.names, truss.links.nodes)
     _expansions(truss, ranges_K)
@@ -41,9 +41,9 @@ def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
 
 
 class NoSupport(StatejumpError):
-    """Some nodes of a truss have no connection to a support.
+    """Some nodes of a truss have no connection to any support.
 
-    :param loose: one node of each unsupported group
+    :param loose: one node of each group of unsupported nodes
     """
 
     def __init__(self, *, loose: tuple[str, ...], **fields: Any) -> None:
@@ -52,7 +52,7 @@ class NoSupport(StatejumpError):
 
 
 def supported(truss: ResolvedTruss) -> np.ndarray:
-    """Return which nodes (n,) have a support, or a constraint that acts as one."""
+    """Return for each node (n,) whether it has a support, or a constraint that acts as a support."""
     nodes = truss.nodes
     held, guided = nodes.fixed[:, : truss.dimension].any(axis=1), nodes.guide_normal.any(axis=1)
     found = np.asarray(held | guided)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of references between the items of a truss: names exist, ends match, no keys contradict each other."""
+"""Checks of references between the items of a truss: names exist, ends match, keys do not contradict each other."""
 from __future__ import annotations
 
 import difflib
@@ -23,7 +23,7 @@ _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
 
 def check_references(case: TrussSections) -> None:
-    """Raise StatejumpError for the first name that does not exist or does not match."""
+    """Raise StatejumpError for the first reference to a name that does not exist or does not match."""
     nodes, links = by_name(case.node), by_name(case.link)
     node_places, link_places = ItemIndex(case.node), ItemIndex(case.link)
     for link in where_wrong(case.link, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):
@@ -54,7 +54,7 @@ def _held(case: TrussSections) -> np.ndarray:
 
 
 def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]]:
-    """Return the items with a temperature: item, its name in messages, whether it expands."""
+    """Yield the items that have a temperature: item, its name in messages, and whether it expands."""
     yield from ((link, {"item": f"link {link.name!r}"}, True)
                 for link in each(case.link, "name", "program", "temperature_fraction"))
     yield from ((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
@@ -93,8 +93,7 @@ def _expansions(case: TrussSections) -> None:
 
 
 def _members(case: TrussSections) -> None:
-    """Check that every link has a column of the histories of members or names a program, and that every column belongs
-    to a member."""
+    """Check the histories of members: each link has a column or names a program; each column belongs to a member."""
     members = case.thermal.members
     if members is None:
         return

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks between several keys of a truss. Each check raises an error for its first finding and names the item.
+"""Checks between several keys of a truss. Each check raises an error for the first fault and names the item.
 
-Programs, names and references come first, then geometry and temperatures on arrays. The solver detects mechanisms,
+The order is: programs, names, references, then geometry and temperatures as arrays. The solver detects mechanisms,
 because these depend on the joints in contact.
 """
 from __future__ import annotations
@@ -27,9 +27,9 @@ SECTIONS = ("node", "link", "program", "expansion", *(kind.section for kind in (
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
-    """Raise StatejumpError for the first fault of a truss, without the name of the file.
+    """Raise StatejumpError for the first fault of a truss. The message does not contain the name of the file.
 
-    :param resolve: returns its arrays; called after its references are checked
+    :param resolve: returns the truss as arrays, after its references are checked
     """
     if case.tables is not None:
         raise NotAllowed("section [tables]", code="tables_of_case_file")

@@ -17,7 +17,7 @@ from statejump.kinds.truss.why_missed import why_missed
 
 
 def energy_residual(energy: Mapping[str, Column]) -> float:
-    """Return supplied minus stored minus dissipated energy over the whole run [J]."""
+    """Return supplied minus stored minus dissipated energy [J], over the whole run."""
     undamped = energy_residue_J(energy, ("thermal_work_J", "external_work_J"), ("elastic_energy_J", "kinetic_energy_J"),
                                 ("friction_dissipation_J",))
     # The residue is a small difference, so the order of subtractions determines its rounding; it must not change.
@@ -31,9 +31,9 @@ def jumps_m(run: Run) -> np.ndarray:
 
 
 def loop_width_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
-    """Return the width of the loop of the first cycle [m]: largest difference of a node between heating and cooling at
-    one temperature. It is 0 if the cycle does not consist of one heating and one cooling branch, as for a sine. Nodes
-    that hang slack at a sample are omitted."""
+    """Return the width of the loop of the first cycle [m]: the largest distance of a node between heating and cooling
+    at the same temperature. It is 0 unless the cycle has one heating and one cooling branch. Nodes that hang slack at a
+    sample are omitted."""
     end = case.samples_per_cycle + 1
     change = run["temperature_change_K"][:end]
     displacement = run["displacement_m"][:end]
@@ -58,8 +58,9 @@ def scales_of(case: TrussCase, run: Run) -> Scales:
 
 
 def jump_scale_m(case: TrussCase, run: Run, hung: np.ndarray) -> float:
-    """Return the scale of differences of jumps [m]: the larger of the largest jump and the width of the loop. If both
-    are at most NO_JUMP of the allowed difference of displacements, it is COMPARED of the motion.
+    """Return the reference [m] for differences of jumps: the larger of the largest jump and the width of the loop. If
+    that is at most NO_JUMP times the allowed difference of displacements, COMPARED times this difference is allowed for
+    jumps.
 
     :param hung: samples at which nodes hang slack (samples, nodes), see :func:`hanging`
     """
@@ -71,17 +72,17 @@ def jump_scale_m(case: TrussCase, run: Run, hung: np.ndarray) -> float:
 
 
 def _relative(name: str, difference: float, scale: float, tolerance: float) -> Quantity:
-    """Return one row. Two models without any motion or force count as equal."""
+    """Return the row of a relative difference. Two models without any motion or force count as equal."""
     return models(name, "-", 0.0, share(difference, scale), tolerance)
 
 
 def _displacement_m(run: Run, hung: np.ndarray) -> np.ndarray:
-    """Return displacements [m] (samples, nodes, 3), zero for nodes that hang slack."""
+    """Return displacements [m] (samples, nodes, 3), set to zero where nodes hang slack."""
     return np.where(hung[:, :, None], 0.0, run["displacement_m"])
 
 
 def _jumps_m(run: Run, hung: np.ndarray) -> np.ndarray:
-    """Return the state jump of every node [m] (nodes, 3), zero for nodes that hang slack at the start or at the end."""
+    """Return the state jump of every node [m] (nodes, 3); zero for nodes that are slack at the start or end."""
     return np.where(hung[[0, -1]].any(axis=0)[:, None], 0.0, jumps_m(run))
 
 
@@ -91,7 +92,7 @@ def hung_nodes(case: TrussCase, run: Run) -> np.ndarray:
 
 
 def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
-    """Compare two runs at the same times; the first gives the scales. Nodes that hang slack in it are omitted."""
+    """Compare two runs at the same times. The first run gives the scales; nodes that hang slack in it are omitted."""
     tolerance, hung = case.tolerance, hung_nodes(case, first)
     ours, other = (_displacement_m(run, hung) for run in (first, second))
     of = scales(case.resolve(), ours)
@@ -122,13 +123,13 @@ def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
 
 
 def reduced_name(run: Run) -> str:
-    """Return the name of the reduced model of a run: the quasi-static solver, or motion."""
+    """Return the name of the reduced model that made a run: quasi-static solver, or motion."""
     return "reduced model in motion" if "velocity_m_per_s" in run.history else "quasi-static solver"
 
 
 def loop_drift_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
-    """Return the largest distance of a node in any later cycle from its position in the second cycle at the same phase
-    [m]. Nodes that hang slack at a sample are omitted."""
+    """Return the largest distance [m] of a node in any later cycle from its position at the same phase of the second
+    cycle. Nodes that hang slack at a sample are omitted."""
     samples, displacement = case.samples_per_cycle, run["displacement_m"]
     if hung is not None:
         displacement = displacement[:, ~hung.any(axis=0)]
@@ -137,8 +138,8 @@ def loop_drift_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> f
 
 
 def _energy_row(case: TrussCase, dem: Run) -> Quantity:
-    """Relate the energy residue to the work of friction or, without friction, to stored and supplied energy. An energy
-    is of second order in the motion, so its smallest scale is the square of that of forces."""
+    """Return the row of the energy residue, relative to friction work or, without friction, to stored energy and
+    damping. An energy is of second order in the motion, so its smallest scale is the square of that of forces."""
     residual = energy_residual(dem.energy)
     scale = change(dem.energy, "friction_dissipation_J")
     name, least = "energy_residual_over_friction_work", COMPARED**2 * scales_of(case, dem).energy_J
@@ -149,7 +150,7 @@ def _energy_row(case: TrussCase, dem: Run) -> Quantity:
 
 
 def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
-    """Compare a DEM run with the quasi-static path at the same times."""
+    """Compare a DEM run with the quasi-static path at the times of the DEM's samples."""
     exact = reduced.at(dem.time_s)
     hung = hung_nodes(case, exact)
     rows = [*difference(case, exact, dem), _energy_row(case, dem)]
@@ -165,7 +166,7 @@ def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
 
 
 def jump_table(case: TrussCase, run: Run, most: int = 8) -> list[tuple[Any, ...]]:
-    """Return name, jump along x, y, z and its length [m] of the nodes with the largest jumps above rounding."""
+    """Return name, jump along x, y, z and its length [m] for the nodes with the largest jumps above rounding."""
     jumps, rounding_m = jumps_m(run), scales_of(case, run).rounding_m
     length = np.linalg.norm(jumps, axis=1)
     order = np.argsort(-length, kind="stable")[:most]

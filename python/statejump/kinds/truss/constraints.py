@@ -37,12 +37,12 @@ class Constraints:
     coefficients: tuple[np.ndarray, ...]  # (terms, 3) for each constraint: coefficients along x, y and z
 
     def pairs(self) -> np.ndarray:
-        """Return pairs of nodes (k, 2) that connect the nodes of each constraint in a graph."""
+        """Return pairs of nodes (k, 2) that link all nodes of each constraint, as edges of a graph."""
         found = [np.stack((one, np.roll(one, 1)), axis=1) for one in self.nodes]
         return np.concatenate(found) if found else np.zeros((0, 2), dtype=np.int32)
 
     def grounded(self) -> np.ndarray:
-        """Return the nodes of constraints that a rigid translation of the truss violates. These constraints act as
+        """Return the nodes of constraints that a rigid translation of the truss violates; such constraints are
         supports."""
         found = [nodes for nodes, of in zip(self.nodes, self.coefficients)
                  if np.linalg.norm(of.sum(axis=0)) > LEAST_COEFFICIENT * np.abs(of).max()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frictional contact problems along the path of a truss: the truss condensed to its joints."""
+"""Frictional contact problems along the path of a truss whose degrees of freedom are condensed to its joints."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ MOST_JOINTS = 2000
 
 @dataclass(frozen=True)
 class ContactProblem:
-    """The frictional contact problem of one step.
+    """The frictional contact problem of one step of the path.
 
-    :param problem: u = W r + q of the joints that can be contacts, with the reactions of the path as stored solution
-    :param velocities: motions of the path in the step [m]: gap at its end, slide of the step
-    :param joints: the joint of every contact
-    :param merit: residual of the reactions of the path
+    :param problem: u = W r + q of the possible contacts; its stored solution has the reactions of the path
+    :param velocities: u on the path [m]: gap at the end of the step, slide during it
+    :param joints: name of the joint of every contact
+    :param merit: error of the reactions of the path
     """
 
     time_s: float
@@ -40,11 +40,11 @@ class ContactProblem:
 def contact_problems(
     case: TrussCase, number: int, on_progress: OnProgress = lambda share: None,
 ) -> list[ContactProblem]:
-    """Return the problems of a number of steps, evenly spaced over the path; fewer if the path has fewer steps.
+    """Return the contact problems of ``number`` steps, evenly spaced over the path; fewer if it is shorter.
 
-    :raises NotAllowed: the number is out of its range
-    :raises StatejumpError: no joint is a contact, there are too many for a dense W, or they have partial slip
-    :raises FailedRun: the solver finds no path
+    :raises NotAllowed: ``number`` is out of its range
+    :raises StatejumpError: no joint is a contact, there are too many for a dense W, or joints have partial slip
+    :raises FailedRun: the solver finds no quasi-static path
     """
     NUMBER.check("number", number)
     truss = case.resolve()

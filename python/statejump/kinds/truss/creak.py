@@ -33,9 +33,9 @@ ORDER = 4  # order of the Butterworth filters of the bands
 class Creak:
     """Slips of the joints of a truss in motion, and the acceleration of one node.
 
-    ``slips``: joint, start_s, duration_s, temperature_change_K, heat_J of every slip. A slip that has not ended at the
-    end of the record is cut there. ``bands``: low_Hz, high_Hz, rms_m_per_s2, peak_m_per_s2 of octaves below half the
-    sampling rate.
+    ``slips`` has joint, start_s, duration_s, temperature_change_K and heat_J of every slip; a slip that continues at
+    the end of the record is cut there. ``bands`` has low_Hz, high_Hz, rms_m_per_s2 and peak_m_per_s2 of octaves below
+    half the sampling rate.
     """
 
     case: TrussCase
@@ -63,7 +63,7 @@ class Creak:
         return libraries.frame(getattr(self, table))
 
     def plot(self) -> Figure:
-        """Draw the slips of joints over time, the acceleration of the node, and its spectrum."""
+        """Draw the slips of the joints over time, and the acceleration of the node with its spectrum."""
         with figures.style():
             figure, places = figures.panels(3, 1, (9.5, 9.0), height_ratios=(1.4, 1, 1))
             self._raster(places[0])
@@ -124,12 +124,12 @@ BAND = ("low_Hz", "high_Hz", "rms_m_per_s2", "peak_m_per_s2")
 
 
 def creak(case: TrussCase, node: str, on_progress: OnProgress = lambda share: None) -> Creak:
-    """Return the acceleration of a node while a truss moves through its program.
+    """Return the acceleration of a node of a truss that moves through its temperature program.
 
     :param node: name of the node
     :param on_progress: called with the finished fraction, 0 to 1
-    :raises NotAllowed: the node does not exist, or steps are not equal
-    :raises FailedRun: as for the motion
+    :raises NotAllowed: the node does not exist, or the time steps are not equal
+    :raises FailedRun: the motion could not be computed
     """
     names = case.resolve().nodes.names
     if node not in names:
@@ -149,7 +149,7 @@ def creak(case: TrussCase, node: str, on_progress: OnProgress = lambda share: No
 
 
 def _density(acceleration: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies [Hz] and the one-sided power density, summed over all components."""
+    """Return frequencies [Hz] and the one-sided power density of the acceleration, summed over its components."""
     length = max(2 * len(acceleration) // (SEGMENTS + 1), 8)  # halves overlap
     frequency, density = signal.welch(acceleration, rate, nperseg=min(length, len(acceleration)), axis=0)
     return frequency, density.sum(axis=1)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input of the YADE script for a truss: bodies, masses, contact groups, time step, loaded start.
 
-Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. The pad of a slider is held by the
-supports of its node at the depth where its floor carries the normal force. The friction limit therefore equals that of
-the quasi-static model, whatever other loads the supports carry.
+Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. A slider is a pad on a floor; the
+supports of its node hold the pad at the depth at which the floor carries the normal force. The friction limit therefore
+equals that of the quasi-static model, whatever other loads the supports carry.
 """
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ def refuse(case: TrussCase, code: str, why: str, **fields: Any) -> StatejumpErro
 def stable_time_step(case: TrussCase, path: Course) -> float:
     """Return a stable time step [s] for the largest forces of the quasi-static path.
 
-    The squared elongation of a spring is at most m (u₁² + u₂²), with m its number of moving ends. For each body, let k
-    be the sum of m times stiffness over all its springs, divided by its mass, and c the same sum for dashpots. The
-    largest eigenvalue is at most the largest k. An oscillator of unit mass with k and c of a body thus bounds the
-    stable step.
+    The squared elongation of a spring with m moving ends is at most m (u₁² + u₂²). For each body, let k be the sum of m
+    times stiffness over all its springs, divided by the mass of the body, and c the same sum for dashpots. The largest
+    eigenvalue is at most the largest k. The stable step of an oscillator with unit mass, k and c, the smallest of all
+    bodies, is thus stable for the truss.
     """
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     mass = np.append(mass, 0)  # of GROUND
@@ -87,16 +87,16 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
 
 
 def number_of_steps(case: TrussCase, path: Course) -> int:
-    """Return the number of steps, a multiple of the number of samples, so that the last sample is the end."""
+    """Return the number of time steps, a multiple of the number of samples, so that the last sample is at the end."""
     wanted = case.dem_settings.time_step_fraction * stable_time_step(case, path)
     return ceil(case.period_s / wanted / case.samples_per_cycle) * case.samples_per_cycle * case.thermal.cycles
 
 
 def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) -> np.ndarray:
-    """Return a group number per contact, type by type; -1 if its bodies do not touch. Joints near each other differ in
-    it.
+    """Return a group number for each contact, type by type; -1 if its bodies do not touch. Nearby joints have different
+    ones.
 
-    YADE searches contacts between all near bodies, but only bodies of one joint may touch.
+    YADE searches for contacts between all near bodies, but only bodies of the same joint may touch.
     """
     own = np.concatenate([joint.bodies_touch(truss.joints[joint.section]) for joint in JOINTS])
     touching = [nodes for joint in JOINTS for nodes in joint.contact_nodes(truss.joints[joint.section]).tolist()]
@@ -136,7 +136,7 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
 
 
 def check(case: TrussCase) -> None:
-    """Raise StatejumpError if the DEM cannot represent an item, before anything is solved."""
+    """Raise StatejumpError, before anything is solved, if the DEM cannot represent an item of the case."""
     truss = case.resolve()
     check_at_rest(truss)
     for index in np.flatnonzero(truss.bodies.own)[:1]:
@@ -186,7 +186,7 @@ def check(case: TrussCase) -> None:
 
 
 def _torsion(truss: ResolvedTruss) -> Torsion:
-    """Return the moments of elements and joints between links, with names that contain their sections."""
+    """Return the torsional stiffnesses of all elements and joints between links. Their names contain their sections."""
     parts = [(element.section, element.torsion(truss.elements[element.section])) for element in ELEMENTS]
     parts += [(joint.section, joint.torsion(truss.joints[joint.section])) for joint in JOINTS]
     return Torsion(
@@ -197,8 +197,8 @@ def _torsion(truss: ResolvedTruss) -> Torsion:
 
 
 def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
-    """Refuse torsion springs with links that leave the plane across the axis: there the angles of DEM and solver
-    differ."""
+    """Refuse a torsion spring with a link that is not normal to its axis, because DEM and solver then differ in the
+    angle."""
     torsion, links, position = _torsion(truss), truss.links, truss.nodes.position_m
     for name, ends, axis in zip(torsion.names, torsion.links, torsion.axis):
         for link in ends[ends != GROUND]:
@@ -209,7 +209,7 @@ def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
 
 
 def _refuse_far_turns(case: TrussCase, path: Course) -> None:
-    """Refuse rotations beyond π/2, because the DEM cannot distinguish such an angle from its opposite."""
+    """Refuse a joint that rotates by more than π/2; the DEM cannot distinguish such an angle from its opposite."""
     for joint in JOINTS:
         joints = path.truss.joints[joint.section]
         turned = joint.largest_turn_rad(path, joints) if joints.names else np.zeros(0)
@@ -220,7 +220,7 @@ def _refuse_far_turns(case: TrussCase, path: Course) -> None:
 
 
 def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
-    """Return the axes (n, 3) along which supports, or a guide normal to the axis, prevent motion of a node."""
+    """Return for each node and axis (n, 3) whether supports, or a guide normal to the axis, prevent motion along it."""
     return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
 
 
@@ -237,8 +237,8 @@ def _lists(part: Any, **more: Any) -> dict[str, Any]:
 def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
     """Return the input of the YADE script as plain values.
 
-    :param path: the quasi-static path of the case, or its motion. Its first state is the start, its forces determine
-        the time step, and its slip displacements the size of the floors
+    :param path: the quasi-static path of the case, or its motion. The DEM starts from its first state; its forces
+        determine the time step, and its slip displacements the size of the floors
     :raises StatejumpError: the DEM cannot represent an item; the message names it
     """
     check(case)
@@ -265,7 +265,7 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
 
 
 def dem_input(case: TrussCase, on_progress: OnProgress = lambda share: None) -> dict[str, Any]:
-    """Compute the path or the motion, and return the input of the YADE script, see :func:`resolved`.
+    """Compute the quasi-static path or the motion, and return the input of the YADE script, see :func:`resolved`.
 
     :param on_progress: called with the finished fraction of the path
     """
@@ -274,8 +274,7 @@ def dem_input(case: TrussCase, on_progress: OnProgress = lambda share: None) -> 
 
 
 def course(case: TrussCase, on_progress: OnProgress) -> Course:
-    """Return the quasi-static path. If it ends at a limit point (snap-through), return the motion of the case
-    instead."""
+    """Return the quasi-static path of a case or, if the path ends at a limit point (snap-through), the motion."""
     try:
         return solve(case, on_progress)
     except EngineFailed as failure:
@@ -285,9 +284,9 @@ def course(case: TrussCase, on_progress: OnProgress) -> Course:
 
 
 def run(case: TrussCase, scene: str, make_run: Callable[..., Run], on_progress: OnProgress) -> Run:
-    """Compute the path and run the case in YADE from its start; see :func:`statejump.core.yade_process.run`.
+    """Compute the path, and run the case in YADE from its first state; see :func:`statejump.core.yade_process.run`.
 
-    :param scene: module that builds the scene in YADE
+    :param scene: Python module that builds the scene in YADE
     """
     values = {"scene": scene, **dem_input(case, lambda share: on_progress(PATH_SHARE * share))}
     return yade_process.run(case, values, make_run, lambda share: on_progress(PATH_SHARE + (1 - PATH_SHARE) * share))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawing of a planar truss; a dense one gets an enlarged detail."""
+"""Drawing of a planar truss. A truss with many nodes in a small area gets an enlarged detail."""
 from __future__ import annotations
 
 from typing import Any
@@ -24,7 +24,7 @@ WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # largest size of the panel
 
 
 def _bowed(truss: ResolvedTruss) -> list[np.ndarray]:
-    """Return the lines (k, 2) of the links. Links that would cover each other become arcs."""
+    """Return the lines (k, 2) of the links. Links that would lie on top of each other become arcs."""
     positions, links = truss.nodes.position_m[:, :2], truss.links
     start, end = positions[links.nodes[:, 0]], positions[links.nodes[:, 1]]
     groups: dict[tuple[Any, ...], list[int]] = {}
@@ -58,7 +58,7 @@ def _zigzag(a: np.ndarray, b: np.ndarray, height: float) -> np.ndarray:
 def planar(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
     """Return the drawing of a planar truss as a new figure with its legend below.
 
-    :param most_named: largest number of nodes that get names; if there are more, none gets one
+    :param most_named: largest number of nodes for which names are written; with more nodes, no name is written
     """
     lines = _bowed(truss)
     low, high = _corners(truss, lines)
@@ -100,7 +100,7 @@ def planar(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
 
 
 def draw_planar(truss: ResolvedTruss, axes: Axes, most_named: int = MOST_NAMED) -> None:
-    """Draw a planar truss into axes, which determine the size of its symbols."""
+    """Draw a planar truss into given axes. The size of the axes determines the size of the symbols."""
     lines = _bowed(truss)
     low, high = _corners(truss, lines)
     box = axes.get_window_extent()
@@ -112,7 +112,7 @@ def draw_planar(truss: ResolvedTruss, axes: Axes, most_named: int = MOST_NAMED) 
 
 
 def _corners(truss: ResolvedTruss, lines: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lower left and the upper right corner [m] of the drawn items."""
+    """Return the lower left and the upper right corner [m] of a rectangle around the drawn items."""
     corners = np.concatenate((*lines, truss.nodes.position_m[:, :2]))
     low, high = corners.min(axis=0), corners.max(axis=0)
     # Arrows begin outside of the truss.
@@ -121,7 +121,7 @@ def _corners(truss: ResolvedTruss, lines: list[np.ndarray]) -> tuple[np.ndarray,
 
 
 def _first_joint(truss: ResolvedTruss) -> np.ndarray:
-    """Return the position of the first joint; without joints, of the first node."""
+    """Return the position of the first joint or, without joints, of the first node."""
     return truss.nodes.position_m[[*covered(truss), 0][0]]
 
 
@@ -135,7 +135,7 @@ def _frame(panel: Axes, middle: np.ndarray, extent: np.ndarray) -> None:
 
 def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: Any, size: float,
           scale: float, most_named: int) -> None:
-    """Draw a planar truss on a panel of the given scale [inch/m], with symbols of the given size [pt]."""
+    """Draw a planar truss into a panel with a given scale [inch/m] and a given size of symbols [pt]."""
     nodes = truss.nodes
     panel.add_collection(LineCollection(lines, colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.4)), zorder=2,
                                         rasterized=len(lines) > 5000))

@@ -22,7 +22,7 @@ MOST_TICKS = 8  # ticks of the longest axis
 def spatial(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
     """Return the drawing of a spatial truss as a new figure with its legend below.
 
-    :param most_named: largest number of nodes that get names; if there are more, none gets one
+    :param most_named: largest number of nodes for which names are written; with more nodes, no name is written
     """
     handles = legend(truss)
     below_in = 0.3 + 0.22 * -(-len(handles) // 2)
@@ -39,8 +39,8 @@ def spatial(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
 
 
 def _fit(drawing: Figure, axes: Axes3D, below: float) -> None:
-    """Scale the drawing to the room above the legend and centre it. In three dimensions, labels and edges may exceed
-    the limits of their axes."""
+    """Scale the drawing to the space above the legend and centre it. In three dimensions, labels and edges may extend
+    beyond their axes."""
     room = axes.get_position()
     for _ in range(2):  # two passes: labels do not scale with the axes, so the second pass uses the remaining room
         drawing.canvas.draw()  # only now the positions in the axes are known

@@ -46,14 +46,13 @@ ROLLER: Strokes = (((0, 0), (-0.5, -0.7), (0.5, -0.7), (0, 0)), ((-0.9, -0.95), 
 
 
 def gap_m(truss: ResolvedTruss) -> float:
-    """Return a typical distance of neighbouring positions [m]. A few nearer ones may overlap, so that symbols are not
-    tiny."""
+    """Return a typical distance of neighbouring positions [m]. Symbols of a few nearer positions may overlap."""
     places = np.unique(np.round(truss.nodes.position_m, 9), axis=0)
     return float(np.quantile(cKDTree(places).query(places, k=2)[0][:, 1], 0.1))
 
 
 def symbol_size(gap_pt: float) -> float:
-    """Return the size of symbols [pt] for a distance of positions on the drawing [pt]."""
+    """Return the size of symbols [pt] for a given distance of positions in the drawing [pt]."""
     return float(np.clip(0.6 * gap_pt, 2.0, 13.0))
 
 
@@ -113,14 +112,14 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
 
 
 def styled_lines(truss: ResolvedTruss) -> list[tuple[np.ndarray, Lines]]:
-    """Return the ends (k, 2) of elements that are drawn as lines, with their style."""
+    """Return the end points (k, 2) of those elements that are drawn as lines, with the style of the lines."""
     return [(element.ends(elements)[style.which], style)
             for element, elements in ((one, truss.elements[one.section]) for one in ELEMENTS)
             for style in element.lines(elements)]
 
 
 def guided(truss: ResolvedTruss) -> np.ndarray:
-    """Return the nodes (n,) of a planar truss that are held in one direction and have no slider on ground."""
+    """Return the nodes (n,) of a planar truss that are held in one direction, except those with a slider on ground."""
     nodes = truss.nodes
     held = (nodes.fixed[:, :2].sum(axis=1) == 1) | (
         ~nodes.fixed[:, :2].any(axis=1) & nodes.guide_normal.any(axis=1))
@@ -130,9 +129,9 @@ def guided(truss: ResolvedTruss) -> np.ndarray:
 
 
 def marker(given: str | Strokes, up: np.ndarray | None = None) -> MarkerStyle:
-    """Return a marker of matplotlib.
+    """Return a marker for matplotlib.
 
-    :param up: (2,) direction of its top; None: unrotated
+    :param up: direction (2,) of the top of the marker; None: the marker is not rotated
     """
     if isinstance(given, str):
         return MarkerStyle(given)
@@ -150,12 +149,12 @@ def symbols(truss: ResolvedTruss) -> list[Symbol]:
 
 
 def covered(truss: ResolvedTruss) -> np.ndarray:
-    """Return the nodes that symbols of joints replace, the first node of each joint first."""
+    """Return the nodes whose symbols are replaced by those of joints, the first node of each joint first."""
     return np.concatenate([joint.covered_nodes(truss.joints[joint.section]) for joint in JOINTS]).astype(int)
 
 
 def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
-    """Return for every position: the position, the names of its nodes, and the direction in which to write them.
+    """Return every occupied position with the names of its nodes and the direction in which to write them.
 
     In a planar truss the direction (2,) is the one farthest from links, elements and the ground of supports.
     """

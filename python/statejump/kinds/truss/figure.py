@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figure of a comparison of a ``truss`` case: loops of the nodes with the largest motion and jump, and joint forces. A
-thin loop with a large reversible part is drawn again without this part."""
+thin loop is drawn a second time without its reversible part."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ DEM_RUN = {**DEM, "linewidth": 1.1}
 
 
 def _shown(case: TrussCase, run: Run) -> list[tuple[int, int]]:
-    """Return node and axis of two displacements: the largest jump, and a clear motion of another node."""
+    """Return node and axis of two displacements: of the largest jump, and of the largest motion of another node."""
     motion = np.ptp(run["displacement_m"], axis=0)
     jump = np.abs(jumps_m(run))
     first = np.unravel_index(np.argmax(jump if jump.max() > 1e-9 * motion.max() else motion), motion.shape)
@@ -43,8 +43,8 @@ def _shown(case: TrussCase, run: Run) -> list[tuple[int, int]]:
 
 
 def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
-    """Return loops of two nodes and of the axial force with the largest change, and the work of friction over time. The
-    first run determines the nodes and the link."""
+    """Return the panels: loops of two nodes, loop of the axial force with the largest range, work of friction over
+    time. The first run determines the nodes and the link."""
     first = runs[0]
     shown = _shown(case, first)
     scale, unit = (1e3, "mm") if np.abs(first["displacement_m"]).max() > 2e-3 else (1e6, "µm")
@@ -115,7 +115,7 @@ def _mark_jump(axes: Axes, case: TrussCase, run: Run, node: int, axis: int, scal
 def draw(case: TrussCase, axes: Axes | None = None, names: bool = False) -> Figure:
     """Return the drawing of a truss.
 
-    :param names: write the names of all nodes, even if they cover the drawing
+    :param names: whether to write the names of all nodes, even if they cover the drawing
     :param axes: axes to draw into, with projection ``3d`` for a spatial truss; None: a new figure
     :raises StatejumpError: the axes are not three-dimensional
     """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masses of nodes. The mass of a link is lumped at its ends, half at each. If one end is fixed, the other gets a third,
-which is exact for a uniform rod on a pin."""
+"""Masses of nodes. Half of a link's mass is lumped at each end. If one end is fixed, the other end gets a third of the
+mass, which is exact for a uniform rod on a pin."""
 from __future__ import annotations
 
 import numpy as np
@@ -10,7 +10,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 
 def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
-    """Return the mass of every node [kg]. :raises MissingKey: a link has none"""
+    """Return the lumped mass of every node [kg]. :raises MissingKey: a link has no density"""
     for name, link in zip(truss.links.names, truss.links.mass_kg):
         if np.isnan(link):
             raise MissingKey("mass_kg", code="mass_of_moving_link_missing", section="density_kg_per_m3 or mass_kg",

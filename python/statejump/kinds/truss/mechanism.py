@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Items of a mechanism for a truss in motion: bodies other than rods, weights, driven links."""
+"""Items of a mechanism for a truss in motion: bodies of any shape, weights, driven links."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ class Drives:
 
 @dataclass(frozen=True)
 class Bodies:
-    """Shapes of links, as fractions of the vector from the first to the second node and of its left normal."""
+    """Shapes of links. Lengths are fractions of the vector from the first to the second node and of its left normal."""
 
     centre: np.ndarray  # (m, 2) centre of mass
     moment_kg_m2: np.ndarray  # (m,) moment of inertia about it
@@ -60,7 +60,7 @@ def _table(item: Drive) -> tuple[np.ndarray, np.ndarray]:
 
 
 def resolve_bodies(links: Sequence[Any], length_m: np.ndarray, mass_kg: np.ndarray) -> Bodies:
-    """Return the shapes of links; a link without one is a rod."""
+    """Return the shapes of links. A link without a shape is a rod."""
     moment = column(links, "moment_of_inertia_kg_m2")
     own_centre = said(links, "centre_of_mass_m")
     middle = np.stack((length_m / 2, np.zeros(len(links))), axis=1)
@@ -74,8 +74,8 @@ def resolve_bodies(links: Sequence[Any], length_m: np.ndarray, mass_kg: np.ndarr
 
 def weights_N(gravity_m_per_s2: np.ndarray, link_nodes: np.ndarray, mass_kg: np.ndarray, bodies: Bodies,
               node_mass_kg: np.ndarray) -> np.ndarray:
-    """Return the weights of all bodies on the nodes (n, 3) [N]. These loads are constant, because the centre of mass of
-    a body is a linear function of its nodes, even if the body rotates in the plane."""
+    """Return the weights of all bodies as loads on the nodes (n, 3) [N]. The loads are constant, because the centre of
+    mass of a body is a linear function of the positions of its nodes, even if the body rotates in the plane."""
     found = node_mass_kg[:, None] * gravity_m_per_s2
     along, left = bodies.centre.T
     x, y, z = gravity_m_per_s2

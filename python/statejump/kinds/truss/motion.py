@@ -23,7 +23,7 @@ from statejump.kinds.truss.solve import TrussEvents, engine_items
 
 @dataclass(frozen=True)
 class TrussMotion:
-    """Result of the engine. ``states`` are those of :class:`TrussPath` with velocities and energies."""
+    """Motion that the engine returns. ``states`` has the arrays of :class:`TrussPath`, and velocities and energies."""
 
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
@@ -76,7 +76,7 @@ class TrussMotion:
 
 def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: float, mass_kg: np.ndarray
                        ) -> np.ndarray:
-    """Return c = 2 ζ sqrt(k m) of elements between two nodes, with m the reduced mass of both, as in the DEM.
+    """Return the dashpot c = 2 ζ sqrt(k m) of elements between two nodes. As in the DEM, m is their reduced mass.
 
     :param mass_kg: mass of every node; 0 for a fixed node
     """
@@ -87,8 +87,8 @@ def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: 
 
 
 def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarray) -> np.ndarray:
-    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type, with m the reduced mass of both bodies, as in the
-    DEM; 0 if neither moves.
+    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type. As in the DEM, m is the reduced mass of both
+    bodies. The value is 0 if neither body moves.
 
     :param mass_kg: mass of every node; 0 for a fixed node
     """
@@ -124,12 +124,12 @@ def inertia(case: TrussCase) -> dict[str, Any]:
 
 
 def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watched_node: int = -1) -> TrussMotion:
-    """Return the motion of a case through its program.
+    """Compute the motion of a truss through its temperature program.
 
     :param on_progress: called with the finished fraction, 0 to 1
     :param watched_node: index of a node whose velocity is recorded at every step
     :raises FailedRun: the start or a step has no solution; the message names joint and temperature
-    :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is only the start
+    :raises Interrupted: Ctrl-C was pressed; ``run`` of the error is the motion so far, or None
     """
     def going_on(share: float) -> bool:
         on_progress(share)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Notes of a quasi-static path as sentences: warnings of a successful run."""
+"""Notes on a quasi-static path as sentences, which become warnings of the successful run."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -48,17 +48,17 @@ def listed(names: Sequence[str]) -> str:
 
 def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray, axial_force_N: np.ndarray
              ) -> tuple[str, ...]:
-    """Return one sentence on buckling and one on yielding, each for the worst link.
+    """Return one sentence about buckling and one about yielding, each for the worst link.
 
-    :param axial_force_N: (times, links), compression positive
+    :param axial_force_N: axial forces (times, links), positive in compression
     """
     if not axial_force_N.size:
         return ()
     places = np.arange(len(links.names))
 
     def sentence(at: np.ndarray, load: np.ndarray, parts: Sequence[str]) -> list[str]:
-        """Return the sentence about links whose load ratio exceeds 1 at these samples. ``parts``: load of the worst
-        link, exceeded limit, behaviour of the models."""
+        """Return the sentence about links whose load exceeds a limit at these samples. ``parts`` are the load of the
+        worst link, the exceeded limit, and the behaviour of the models."""
         beyond = np.flatnonzero(load > 1)
         if not len(beyond):
             return []

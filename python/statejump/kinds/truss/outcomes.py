@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outcomes of one truss in a campaign. Reflector columns are NaN if the nodes determine no best fit. Jumps and
+"""Outcomes that a campaign records of a truss. Reflector columns are NaN if the nodes determine no best fit. Jumps and
 reflector columns are NaN if the program does not return to the reference temperature."""
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ LEAST_HEAT = 1e-9
 
 
 def quick(case: TrussCase) -> Run:
-    """Run the reduced model and keep the ends of cycles. The solver locates only events that influence the state."""
+    """Run the reduced model and keep the ends of cycles. The solver locates only events that affect the state."""
     path = quick_path(case.resolve(), case.reduced_settings.increments_per_branch)
     return reduced_run(case, path, np.array([0.0, case.duration_s]))
 
 
 def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
-    """Return the outcomes of a run of the reduced model; jumps are those over all cycles."""
+    """Return the outcomes of a run of the reduced model. A jump is the change over all cycles."""
     found: TrussPath = run.native
     truss, ends = found.truss, found.cycle_ends
     jumps = np.linalg.norm(node_jumps(found)[-1], axis=1)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Report page of a truss: jumps of nodes, contributions of joints, sensitivities.
 
-The data are in a file of ``statejump truss answers``. Without this file, the page takes jumps from the histories and
-ranks joints by their motion and heat.
+The data are in the result file of ``statejump truss answers``. Without it, the page takes jumps from the histories of a
+run, and ranks joints by their motion and heat.
 """
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ class Measure:
 
 
 def _vectors(rows: list[Row], cycles: int) -> np.ndarray:
-    """Return the jumps (cycles, items, 3) of rows in the order of cycles."""
+    """Return the jumps (cycles, items, 3) in rows that are sorted by cycle."""
     found = np.array([[row[f"jump_{axis}_m"] for axis in "xyz"] for row in rows], dtype=float)
     return found.reshape(cycles, -1, 3)
 
 
 class TrussPart:
-    """The part of a page that only trusses have.
+    """The section of the report page that only trusses have.
 
     :param result: a truss with the history of its nodes, see :func:`page`
     """
@@ -93,7 +93,7 @@ class TrussPart:
         self.columns = {model: self._curves(run) for model, run in result.models.items()}
 
     def _cycle_ends(self, run: Run) -> np.ndarray:
-        """Return the samples at the start and nearest to the end of each cycle of the run."""
+        """Return the indices of the first sample and of the samples nearest to the end of each cycle."""
         time, period = run.time_s, self.case.period_s
         whole = int(math.floor(float(time[-1]) / period + 1e-6))
         wanted = period * np.arange(min(self.cycles, whole) + 1) if whole else time[[0, -1]]
@@ -105,15 +105,14 @@ class TrussPart:
 
     @property
     def _first(self) -> int:
-        """Return the node whose jump the page reports: the output node of the answers, else the node that moves
-        most."""
+        """Return the node whose jump the page reports: the output of the answers, else the node that moves most."""
         named = self.answers.output.partition("node:")[2] if self.answers is not None else ""
         return self._number[named] if named in self._number else int(np.argmax(self._size_m))
 
     # ---------------------------------------------------------------- joints
 
     def _joints(self) -> list[Row]:
-        """Return every joint in the order of the file: name, kind, node, and the ranking quantities."""
+        """Return one row for every joint in the order of the file: name, kind, node, and quantities to rank."""
         truss = self.case.resolve()
         found: list[Row] = []
         for joint in JOINTS:
@@ -137,7 +136,7 @@ class TrussPart:
         return found
 
     def _read_off(self, joints: list[Row]) -> None:
-        """Add to the joints, from the histories, their distance from the start and their frictional heat."""
+        """Add the distance of each joint from its start, and its frictional heat, from the histories of the run."""
         run = self._run
         contacts = self._since_start(run, "contacts", "dissipation_J") if "dissipation_J" in run.contacts else None
         first = 0
@@ -176,7 +175,7 @@ class TrussPart:
                 if measure.key in keys and any(joint.get(measure.key) for joint in self.joints)]
 
     def ranking(self) -> list[Row]:
-        """Return the rows of the table of joints as texts, ranked by the first quantity."""
+        """Return the rows of the table of joints as texts, ranked by the first of their quantities."""
         if not self.measures:
             return []
         first = self.measures[0].key
@@ -207,12 +206,12 @@ class TrussPart:
 
     @property
     def verdict(self) -> str:
-        """Return the sentence of the answers about the cycles; "" without answers."""
+        """Return the verdict of the answers on the cycles, as a sentence; "" without answers."""
         verdict = "" if self.answers is None else self.answers.verdict_text
         return f"{verdict[:1].upper()}{verdict[1:]}." if verdict else ""
 
     def cards(self) -> list[Row]:
-        """Return the jump of the output of the answers, for the top of the page."""
+        """Return the jump of the output of the answers, as a number for the top of the page."""
         if self.answers is None:
             return []
         jump = text(self.answers.summary["jump"].value, self.answers.unit)
@@ -254,12 +253,12 @@ class TrussPart:
 
     @property
     def notes(self) -> list[str]:
-        """Return the remarks of the answers without the warnings of the run, which the head of the page shows."""
+        """Return the remarks of the answers. They omit the warnings of the run, which the head of the page shows."""
         return [] if self.answers is None else [
             note[:1].upper() + note[1:] + "." for note in self.answers.notes if note not in self.result.warnings]
 
     def cycle_rows(self) -> list[Row]:
-        """Return the rows of the table of cycles: the first and the last ones if there are many."""
+        """Return the rows of the table of cycles; if there are many cycles, the first and the last rows."""
         rows = self.answers.tables.get("cycles", []) if self.answers is not None else []
         return [rows[place] for place in _some(len(rows), MOST_CYCLES)] if len(rows) > 1 else []
 
@@ -285,7 +284,7 @@ class TrussPart:
         return any(row["focal_length_m"] is not None for row in rows)
 
     def sensitivities(self) -> tuple[list[Row], int]:
-        """Return the rows of the table of sensitivities, the strongest first, and the number of omitted rows."""
+        """Return the rows of the table of sensitivities, the largest first, and the number of omitted rows."""
         rows = self.answers.tables.get("sensitivities", []) if self.answers is not None else []
         ranked = sorted(rows, key=lambda row: -abs(row["elasticity"] or 0.0))
         most = max((abs(row["elasticity"] or 0.0) for row in ranked), default=0.0)
@@ -363,9 +362,9 @@ class TrussPart:
     # ---------------------------------------------------------------- drawing
 
     def payload(self, encoded: Callable[[np.ndarray], Any]) -> Row:
-        """Return data for the page's script.
+        """Return the truss data for the script of the page.
 
-        :param encoded: converts an array to a column of the page
+        :param encoded: converts an array to the page's encoding
         """
         start = self._run.history["position_m"].values[0]
         size = float(np.ptp(start, axis=0).max())
@@ -402,7 +401,7 @@ class TrussPart:
 
 
 def _some(count: int, most: int) -> list[int]:
-    """Return the first and last indices of many items; all indices of a few."""
+    """Return all indices of ``count`` items or, if these are too many, the first and the last indices."""
     return list(range(count)) if count <= most else [*range(most // 2), *range(count - most + most // 2, count)]
 
 
@@ -411,7 +410,7 @@ def _cycles(count: int) -> str:
 
 
 def page(result: Result, case: TrussCase) -> TrussPart | None:
-    """Return the part of a page for a truss; None without a history of its nodes."""
+    """Return the page section of a truss; None if the result has no history of its nodes."""
     if not result.models:
         return None
     run = next(iter(result.models.values()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks that several sections of a truss share: names, ends, axes, rotating links."""
+"""Checks of items that several sections of a truss share: names, ends, axes, rotating links."""
 from __future__ import annotations
 
 import difflib
@@ -24,7 +24,7 @@ def listed(names: list[str]) -> str:
 
 
 def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: str, **where: Any) -> None:
-    """Raise NotAllowed for an unknown name; the remedy is the most similar known name."""
+    """Raise NotAllowed if a name is unknown. The remedy suggests the most similar known name."""
     if name in known:
         return
     nearest = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
@@ -37,7 +37,7 @@ def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: 
 
 
 def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: Mapping[str, Any]) -> None:
-    """Raise NotAllowed unless ``nodes`` of an item names two different nodes, or a single one if ``least`` is 1."""
+    """Raise NotAllowed unless ``nodes`` of an item names two different nodes, or one node if ``least`` is 1."""
     if not least <= len(names) <= 2:
         many = "2 nodes" if least == 2 else "1 node, on ground, or 2 nodes"
         raise NotAllowed("nodes", names, code="wrong_number_of_nodes", wanted=many, **where)
@@ -69,7 +69,7 @@ class Around:
 
 
 def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:
-    """Return the items (n,) that do not name two different items, or a single one if ``least`` is 1.
+    """Return which items (n,) do not name two different items, or one item if ``least`` is 1.
 
     :param places: indices of the named items (n, k), as :class:`~statejump.schema.item_tables.ItemIndex` returns them
     """
@@ -95,7 +95,7 @@ def wrong_axes(items: ItemColumns[Any], dimension: int) -> np.ndarray:
 
 
 def vector(key: str, value: list[float] | None, unit: str, dimension: int, direction: bool, **where: Any) -> None:
-    """Raise NotAllowed for a vector whose length differs from the dimension of the truss, or for a zero direction."""
+    """Raise NotAllowed if the length of a vector is not the dimension of the truss, or if a direction is zero."""
     if value is None:
         return
     if len(value) != dimension:
@@ -105,7 +105,7 @@ def vector(key: str, value: list[float] | None, unit: str, dimension: int, direc
 
 
 def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[str, Any]) -> None:
-    """Raise an error unless a spatial truss gives an axis of rotation and a planar truss gives none."""
+    """Raise an error unless the item has an axis of rotation in a spatial truss, and none in a planar truss."""
     if dimension == 2 and axis is not None:
         raise NotAllowed("axis", axis, code="planar_axis", **where)
     if dimension == 3 and axis is None:
@@ -114,9 +114,9 @@ def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[st
 
 
 def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
-    """Raise NotAllowed unless the links that an item rotates against each other meet at a position and form an angle.
+    """Raise NotAllowed unless the two links between which an item acts meet at a position and form an angle.
 
-    :param items: arrays with names, links (k, 2) and axis (k, 3)
+    :param items: arrays of the items, with names, links (k, 2) and axis (k, 3)
     """
     joined = np.unique(_pair_codes(truss, *truss.joined().T))
     for start in range(0, len(items.links), BLOCK):
@@ -124,7 +124,7 @@ def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
 
 
 def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, joined: np.ndarray) -> None:
-    """Apply :func:`turned_links` to some rows; ``joined`` has the codes of all pairs of nodes that joints couple."""
+    """Apply :func:`turned_links` to some rows. ``joined`` has the codes of all pairs of nodes that joints couple."""
     links, pairs, axes = truss.links, items.links[rows], items.axis[rows]
     turned = pairs != GROUND
     ends = links.nodes[pairs]  # (k, 2 links, 2 ends)
@@ -151,5 +151,5 @@ def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, j
 
 
 def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return a code for every pair of nodes, independent of their order."""
+    """Return a code for every pair of nodes, the same for both orders of the nodes."""
     return np.minimum(ones, others, dtype=np.int64) * len(truss.nodes.names) + np.maximum(ones, others)

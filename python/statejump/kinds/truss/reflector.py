@@ -10,7 +10,7 @@ from statejump.surface.design import Design
 
 
 def surface(case: TrussCase) -> tuple[Design, np.ndarray]:
-    """Return the surface and the indices of its nodes among those of the truss.
+    """Return the reflecting surface of a case, and the indices of its nodes in the truss.
 
     :raises StatejumpError: the case has no [reflector], or its nodes do not define a surface
     """

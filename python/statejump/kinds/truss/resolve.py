@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The arrays of a case of kind ``truss``: names become indices, keys become arrays."""
+"""Conversion of a case of kind ``truss`` to arrays: names become indices, and each key becomes an array."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ from statejump.schema.item_tables import ItemColumns, ItemIndex, once
 
 
 def resolve(case: TrussSections) -> ResolvedTruss:
-    """Return the arrays of a case. ``checks`` has checked the references when the case was read."""
+    """Return the arrays of a case. All references must be valid; ``checks`` verifies them."""
     dimension = case.truss.dimension
     node_places, link_places = ItemIndex(case.node), ItemIndex(case.link)
     positions = vectors(case.node, "position_m", dimension)
@@ -115,11 +115,11 @@ class LinkTemperatures:
 
 
 def link_temperatures(case: TrussSections, shown: np.ndarray, names: tuple[str, ...]) -> LinkTemperatures:
-    """Return the programs of the links. ``checks`` has checked the references when the case was read.
+    """Return the programs of the links. All references must be valid; ``checks`` verifies them.
 
-    :param shown: the program of the temperature of every link
-    :param names: of the programs of the case
-    :raises NotAllowed: a program leaves the table of an expansion, or is not piecewise linear
+    :param shown: index of the temperature program of every link
+    :param names: names of the programs of the case
+    :raises NotAllowed: a program leaves the temperatures of an expansion table, or is not piecewise linear
     """
     programs, named = case.programs, list(names)
     expansions = {expansion.name: expansion for expansion in case.expansion}

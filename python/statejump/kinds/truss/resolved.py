@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A truss as arrays for solver, DEM and drawing; :mod:`.resolve` makes it from a case.
 
-Vectors have three components; the third is 0 in planar trusses. Items are numbered as in the file.
-Index -1 stands for ground.
+Vectors have three components; the third is 0 in planar trusses. Items are numbered as in the file. Index -1 means the
+ground.
 """
 from __future__ import annotations
 
@@ -107,8 +107,8 @@ class JoinsNodes(Protocol):
 
 @dataclass(frozen=True)
 class ResolvedTruss:
-    """A whole truss. ``programs[0]`` is the common [thermal], followed by named programs, histories of members, and
-    programs of links with an [[expansion]]. All programs have the same duration."""
+    """A truss as arrays. ``programs[0]`` is the common program [thermal]. Named programs, histories of members, and
+    programs of links with an [[expansion]] follow. All programs have the same duration."""
 
     name: str
     dimension: int
@@ -160,7 +160,7 @@ class ResolvedTruss:
         return [element.stiffness_N_per_m(self.elements[element.section]) for element in self.element_types]
 
     def tensions_N(self, states: Mapping[str, np.ndarray]) -> list[np.ndarray]:
-        """Return the tensions (states, k) [N] of links, and of the elements of each type, along :meth:`ends`."""
+        """Return the tensions (states, k) [N] of links and of the elements of each type, ordered as :meth:`ends`."""
         return [-states["axial_force_N"], *(element.tension_N(states) for element in self.element_types)]
 
     def with_joints(self, **changed: Any) -> ResolvedTruss:
@@ -176,12 +176,12 @@ class ResolvedTruss:
         return sum(len(joints.names) for joints in self.joints.values())
 
     def turning_places(self, links: np.ndarray) -> np.ndarray:
-        """Return the positions (k, 3) of items that rotate pairs of links (k, 2) against each other."""
+        """Return the positions (k, 3) of items that rotate two links (k, 2) relative to each other."""
         return self.nodes.position_m[self.turning_nodes(links)]
 
     def turning_nodes(self, links: np.ndarray) -> np.ndarray:
-        """Return the nodes (k,) of items that rotate pairs of links (k, 2) against each other: the common end of both
-        links, or the first node of a single link."""
+        """Return the nodes (k,) of items that rotate two links (k, 2) relative to each other. The node is the common
+        end of both links, or the first node of a single link."""
         positions, nodes = self.nodes.position_m, []
         for one, two in links:
             first = self.links.nodes[one]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results of a ``truss`` case. Both models have the same columns, with one value per item."""
+"""Results of a ``truss`` case. Both models return the same columns, with one value per item."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -52,16 +52,14 @@ def _joints(truss: ResolvedTruss) -> list[str]:
 
 
 def joint_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
-    """Return the name of every contact by kind and name of its joint; with the kind if joints of two types share a
-    name."""
+    """Return for each contact the name of its joint, with the kind of joint if joints of two types share a name."""
     listed = [(joint.section, name) for joint in TOUCHING for name in truss.joints[joint.section].names]
     shared = len({name for _, name in listed}) < len(listed)
     return {(kind, name): f"{kind} {name}" if shared else name for kind, name in listed}
 
 
 def every_joint_name(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
-    """Return the name of every joint; contacts keep theirs. It includes the kind if an earlier joint has the same
-    name."""
+    """Return the name of every joint; contacts keep theirs. It includes the kind if an earlier joint has this name."""
     found = joint_names(truss)
     taken = set(found.values())
     for joint in JOINTS:
@@ -84,7 +82,7 @@ def names(case: TrussCase) -> dict[str, list[str]]:
 
 
 def scene(case: TrussCase) -> dict[str, Any]:
-    """Return links and elements between nodes, blocks of sliders, journals and bearings, for drawings."""
+    """Return the scene for drawings: links and elements between nodes, blocks of sliders, journals and bearings."""
     truss = case.resolve()
     nodes = [drawing.ref("history/position_m", name) for name in truss.nodes.names]
     parts: list[dict[str, Any]] = [
@@ -132,7 +130,7 @@ def _run(
     events: Callable[[], list[Event]], summary: Mapping[str, float], warnings: tuple[str, ...] = (),
     dense: tuple[np.ndarray, np.ndarray] | None = None, **more: Any,
 ) -> Run:
-    """Return a run. ``dense``: times and displacements that are denser than the samples, if any."""
+    """Make a run. ``dense`` has times and displacements at smaller intervals than the samples, if there are any."""
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
     for key, (of, _) in ITEMS.items():
@@ -161,8 +159,8 @@ def _run(
 
 
 def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> dict[str, float]:
-    """Return the largest jump of a node and the largest displacement at the end of the program. The jump is NaN if the
-    program does not return."""
+    """Return the largest jump of a node, and the largest displacement at the end of the program. The jump is NaN if the
+    program does not return to ΔT = 0."""
     moved = displacement_m - displacement_m[0]
     largest = float(np.linalg.norm(moved[-1], axis=1).max())
     found = {"largest_jump_m": largest if case.has_jump else nan}
@@ -176,7 +174,7 @@ def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> d
 
 
 def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> dict[str, float]:
-    """Return the friction in the first state for the summary: forces, and moments of hinges."""
+    """Return the friction forces, and the friction moments of hinges, in the first state, for the summary."""
     forces: list[tuple[np.ndarray, np.ndarray]] = [(np.zeros(0), np.zeros(0))]
     moments: list[tuple[np.ndarray, np.ndarray]] = []
     for joint in JOINTS:
@@ -194,7 +192,7 @@ def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> di
 
 def _switches(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, items: Mapping[str, np.ndarray]
               ) -> list[Event]:
-    """Return the events at which elements switch, each midway between two samples."""
+    """Return the events at which elements switch on or off. The time of an event is the mean of two samples."""
     others = set(every_joint_name(truss).values())
     found = []
     for element in ELEMENTS:
@@ -235,7 +233,7 @@ def _contacts(
 
 
 def _states(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the states of contacts by column name, converted from the engine's statuses."""
+    """Return the states of contacts by column name, converted from the statuses of the engine."""
     return {joint.state_column: STATES[states[f"{joint.section}_status"].astype(int)] for joint in TOUCHING}
 
 
@@ -262,8 +260,7 @@ def sample_times(case: TrussCase) -> np.ndarray:
 
 
 def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
-    """Return the quasi-static path at these times [s], linear between its states; :meth:`Run.at` returns other
-    times."""
+    """Return the quasi-static path at given times [s], interpolated linearly between its states."""
     states = path.states
     at = states["time_s"]
     times_s = np.asarray(times_s, dtype=float)
@@ -303,8 +300,8 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
 
 
 def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
-    """Return warnings of a path without located events. If two joints change within one increment, their order is
-    unknown, and a third joint may have slipped back and forth unnoticed."""
+    """Return warnings about a path whose events are not located. If two joints change within one increment, their order
+    is unknown, and a third joint may have slipped back and forth without a trace."""
     # Changes that affect the state are located even then, within 1.5 tolerances of a branch.
     located = 2 * case.reduced_settings.event_tolerance * float(path.states["time_s"][-1])
     found = path.events
@@ -319,7 +316,7 @@ def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
 
 
 def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
-    """Return the motion of a case as a run of the reduced model; its samples are those of the DEM."""
+    """Return the motion of a case as a run of the reduced model, at the times of the DEM's samples."""
     states = motion.states
     items = {key: states[key] for key in ITEMS} | _states(states)
     of_joints = _heat(states)
@@ -391,6 +388,6 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
 
 
 def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
-    """Return warnings about links that cannot carry the forces at the samples."""
+    """Return warnings about links that could not carry their forces at some samples."""
     return notes.warnings(case.resolve().links, plain["time_s"].values, plain["temperature_change_K"].values,
                           items["axial_force_N"])

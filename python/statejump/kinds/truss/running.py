@@ -30,7 +30,7 @@ def dynamic(case: TrussCase, on_progress: OnProgress) -> Run:
 
 
 def check_dem(case: TrussCase) -> None:
-    """Raise StatejumpError if the DEM cannot run a case, without solving it."""
+    """Raise StatejumpError if the DEM cannot run a case, as far as this is known without solving it."""
     scene.check(case)
     find_yade()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scales of the motion of a truss, and the fractions of them below which a number is rounding.
+"""Scales of the motion of a truss, and the fractions of the scales below which a number counts as rounding.
 
 A scale depends on the truss and its whole program, so it does not vanish when a truss returns to its initial position.
 """
@@ -32,11 +32,11 @@ LEAST_MOTION = 1e4
 class Scales:
     """Reference values for differences.
 
-    :param motion_m: largest displacement, free expansion, or deflection of the stiffest element under the largest load;
-        at least LEAST_MOTION times the rounding of coordinates
-    :param rounding_m: displacements up to this value are rounding
-    :param force_N: largest force of a link with prevented expansion, or largest load
-    :param energy_J: elastic energy of all links with prevented expansion, or of the deflection in ``motion_m``
+    :param motion_m: largest displacement, free expansion, or deflection of the stiffest element under the largest load
+        [m]; at least LEAST_MOTION times the rounding of coordinates
+    :param rounding_m: largest displacement that counts as rounding [m]
+    :param force_N: largest force of a link with prevented expansion, or largest load [N]
+    :param energy_J: elastic energy of all links with prevented expansion, or of the deflection in ``motion_m`` [J]
     """
 
     motion_m: float

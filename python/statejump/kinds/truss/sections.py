@@ -109,7 +109,7 @@ class Program(Item, Thermal):
     def completed(self, common: TrussThermal) -> TrussThermal:
         """Return the program with missing cycles and period taken from the common program.
 
-        :raises NotAllowed: it is a table whose duration differs from ``period_s``
+        :raises NotAllowed: the program is a table whose duration differs from ``period_s``
         """
         given = self.to_dict()
         del given["name"]
@@ -136,7 +136,7 @@ Tables = section_class(
 
 
 def sections_in_files() -> tuple[str, ...]:
-    """Return the lists that may be in files beside the case file."""
+    """Return the lists of a truss whose items may be in files beside the case file."""
     return tuple(fields_of(Tables))
 
 
@@ -244,7 +244,7 @@ class TrussSections(ElementLists, JointLists, TrussParts):
 
     @property
     def programs(self) -> list[TrussThermal | MemberProgram]:
-        """The temperature programs with cycles and period: the common one, named ones, those of members."""
+        """The temperature programs with cycles and period: the common program, named programs, those of members."""
         members = self.thermal.members
         of_members = [] if members is None else members.programs(self.thermal.cycles, self.period_s)
         return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]
@@ -255,5 +255,5 @@ class TrussSections(ElementLists, JointLists, TrussParts):
         return [self.thermal, *self.program, *of_members]
 
     def returns_s(self) -> Numbers:
-        """Return the times [s] at which all items have their first temperature again."""
+        """Return the times [s] at which the temperatures of all items have their initial values again."""
         return returns_s(self.programs, self.period_s)

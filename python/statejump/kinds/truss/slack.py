@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes whose elements hang slack in the play of their joints: no model determines their positions."""
+"""Nodes whose elements hang slack within the play of joints. No model determines positions of such nodes."""
 from __future__ import annotations
 
 import numpy as np
@@ -19,7 +19,7 @@ NO_FORCE = 1e-6
 
 
 def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
-    """Return a sentence about the nodes that hang slack at some sample (samples, nodes)."""
+    """Return a sentence about the nodes that hang slack at a sample."""
     names = [repr(case.node[node].name) for node in np.flatnonzero(hung.any(axis=0))]
     if not names:
         return ()
@@ -28,13 +28,13 @@ def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
 
 
 def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
-    """Return the samples at which nodes hang slack (samples, nodes).
+    """Return for each sample and node (samples, nodes) whether the node hangs slack.
 
-    A node hangs slack if its links carry no force and fewer items hold it than it has directions. A link does not hold
-    a node if its other end hangs slack. A joint with clearance does not hold a node if its contact carries no force. A
-    group of slack links is not recognised if each of its nodes has as many links as directions.
+    A node hangs slack if its links carry no force and the items that hold it are fewer than its directions of motion. A
+    link does not hold a node if its other end hangs slack. A joint with clearance does not hold a node if its contact
+    carries no force. A group of slack links is not recognised if each of its nodes has as many links as directions.
 
-    :param least_force_N: lower bound of the largest force
+    :param least_force_N: lower bound of the largest force, which forces are compared with
     """
     truss = case.resolve()
     ends, force = truss.links.nodes, np.abs(run.links["axial_force_N"].values)
@@ -57,7 +57,7 @@ def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
 
 
 def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarray) -> bool:
-    """Add the directions that joints with clearance constrain at nodes (samples, nodes). Return whether some joint
+    """Add to ``held`` the directions in which joints with clearance hold nodes (samples, nodes). Return whether a joint
     carries no force at a sample."""
     place, idle = 0, False
     for joint in JOINTS:
@@ -76,7 +76,7 @@ def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarra
 
 def _others_hold(truss: ResolvedTruss) -> np.ndarray:
     """Return the number of directions in which supports, elements, torsional items and joints without clearance hold
-    each node. Each of the last three counts as all directions."""
+    each node. Each of the last three counts as holding it in all directions."""
     d = truss.dimension
     found = truss.nodes.fixed[:, :d].sum(axis=1) + truss.nodes.guide_normal.any(axis=1)
     turned = [*(element.torsion(truss.elements[element.section]).links for element in ELEMENTS),

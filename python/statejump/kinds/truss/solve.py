@@ -29,7 +29,7 @@ LARGEST_PATH = 1 << 30
 
 @dataclass(frozen=True)
 class TrussEvent:
-    """Change of the status of a joint, located between time_s - interval_s and time_s."""
+    """Change of the status of a joint, located between the times time_s - interval_s and time_s."""
 
     time_s: float
     interval_s: float
@@ -42,7 +42,7 @@ class TrussEvent:
 
 @dataclass(frozen=True, eq=False)
 class TrussEvents(Sequence[TrussEvent]):
-    """The events of a path in order of time. They are stored as columns; event objects are created on access."""
+    """The events of a path in order of time. They are stored as columns; event objects are made on access."""
 
     truss: ResolvedTruss
     time_s: np.ndarray
@@ -77,8 +77,8 @@ class TrussEvents(Sequence[TrussEvent]):
 
 @dataclass(frozen=True)
 class TrussPath:
-    """Result of the solver. ``states`` and ``cycle_ends`` map a name with unit to an array whose first axis is the
-    state: (states, nodes, 3), (states, links), ... Axial force is positive in compression."""
+    """Path that the engine returns. ``states`` and ``cycle_ends`` map a name with unit to an array whose first axis is
+    the state: (states, nodes, 3), (states, links), ... Axial force is positive in compression."""
 
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
@@ -95,7 +95,7 @@ class TrussPath:
 
     @property
     def energy_residue_J(self) -> float:
-        """Thermal work minus elastic energy, load potential and frictional heat since the start [J]."""
+        """Thermal work minus elastic energy, load potential and frictional heat [J], all since the start."""
         states = self.states
         stored = states["elastic_energy_J"] + states["load_potential_J"]
         return float((states["thermal_work_J"] - (stored - stored[0]) - heat_of_joints_J(states).sum(axis=1))[-1])
@@ -113,7 +113,7 @@ def engine_program(program: Thermal | MemberProgram) -> _engine.ThermalProgram:
 
 
 def engine_programs(truss: ResolvedTruss) -> list[_engine.ThermalProgram]:
-    """Return all programs of a truss as engine objects. They are cached, because a truss is immutable."""
+    """Return all temperature programs of a truss as engine objects, cached because a truss is immutable."""
     kept = vars(truss)
     if "_engine_programs" not in kept:
         kept["_engine_programs"] = [engine_program(program) for program in truss.programs]
@@ -126,7 +126,7 @@ def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
 
 
 def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:
-    """Return the joints of a type as the arrays that the engine requires."""
+    """Return the joints of a type as arrays for the engine."""
     joints = truss.joints[joint.section]
     made = joint.engine_arrays(truss, joints)
     keys = [parameter["key"] for parameter in _engine.truss_joints()[joint.section]["parameters"]]
@@ -134,7 +134,7 @@ def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:
 
 
 def _elements(truss: ResolvedTruss, table: str) -> dict[str, Any]:
-    """Return the elements of a type as the arrays that the engine requires."""
+    """Return the elements of a type as arrays for the engine."""
     keys = dict.fromkeys(parameter["key"] for parameter in _engine.truss_elements()[table]["parameters"])
     parts = {"links": truss.links} | {element.items: truss.elements[element.section] for element in ELEMENTS}
     return _table(parts[table], *keys)
@@ -165,13 +165,13 @@ def path(
 ) -> TrussPath:
     """Return the quasi-static path of a truss.
 
-    :param increments_per_branch: points of the path per monotone branch of the temperature
-    :param locate_events: locate every change of a joint status; else only changes that affect the state
-    :param event_tolerance: fraction of a branch within which a change is located
+    :param increments_per_branch: number of points of the path per monotone branch of the temperature
+    :param locate_events: whether to locate every change of a joint status, or only changes that affect the state
+    :param event_tolerance: interval within which a change is located, as a fraction of a branch
     :param energy_tolerance: allowed energy error, as a fraction of the work of the temperature. If events are located,
-        increments with a larger error are divided; 1: no division
-    :param cycle_ends_only: keep only the states at the ends of cycles
-    :param problem_times: ascending times at which the frictional contact problem of a step is stored [s]
+        increments with a larger error are divided; 1: no increment is divided
+    :param cycle_ends_only: whether to keep only the ends of cycles
+    :param problem_times: ascending times [s] at which the contact problem of a step is stored
     :param progress: called with the finished fraction; returning False ends the path
     :param trace: called with each Newton iteration, see :data:`statejump.kinds.truss.trace.COLUMNS`
     :raises FailedRun: mechanism, unloaded joint or no equilibrium; the message has names and temperature
@@ -194,8 +194,8 @@ def path(
 def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: None, **options: Any) -> TrussPath:
     """Return the complete path; see :func:`path`.
 
-    :param on_progress: receives the finished fraction, 0 to 1
-    :raises Interrupted: Ctrl-C
+    :param on_progress: called with the finished fraction, 0 to 1
+    :raises Interrupted: Ctrl-C was pressed
     """
     def going_on(share: float) -> bool:
         on_progress(share)
@@ -217,13 +217,13 @@ def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure) -> EngineFaile
 
 def solve(case: TrussCase, on_progress: OnProgress = lambda fraction: None,
           trace: Callable[[tuple[Any, ...]], object] | None = None) -> TrussPath:
-    """Return the path of a case, with the settings of its [reduced]. The path of an immutable case is computed once and
-    cached, because the DEM starts from it. A trace needs a new solution.
+    """Return the path of a case with the settings in its [reduced]. The path of a case is computed once and cached,
+    because the DEM starts from it. Only a trace causes a new solution.
 
     :param on_progress: called with the finished fraction, 0 to 1
     :param trace: as for :func:`path`
     :raises FailedRun: mechanism, unloaded joint or no equilibrium; the message has names and temperature
-    :raises Interrupted: Ctrl-C
+    :raises Interrupted: Ctrl-C was pressed
     """
     kept = vars(case)
     if trace is not None or "_path" not in kept:
@@ -242,6 +242,6 @@ def _solved(case: TrussCase, on_progress: OnProgress, trace: Callable[[tuple[Any
 
 
 def settings(case: TrussCase) -> dict[str, Any]:
-    """Return the settings in [reduced] of a case as arguments of :func:`path`."""
+    """Return the settings of [reduced] in a case as arguments of :func:`path`."""
     keys = "increments_per_branch", "locate_events", "event_tolerance", "energy_tolerance"
     return {key: getattr(case.reduced_settings, key) for key in keys}

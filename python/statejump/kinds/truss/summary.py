@@ -25,12 +25,12 @@ def is_held(case: TrussCase, node: Node) -> bool:
 
 
 def is_guided(case: TrussCase, node: Node) -> bool:
-    """Return whether a node can move in some directions but not in all."""
+    """Return whether a node can move in some directions but not in all directions."""
     return bool(node.fixed or node.guide_normal) and not is_held(case, node)
 
 
 def describe(case: TrussCase) -> list[str]:
-    """Return the description of the case in sentences, without the temperature program, common to all kinds."""
+    """Describe the case in sentences, without the temperature program, which code common to all kinds describes."""
     kind = {2: "plane", 3: "spatial"}[case.truss.dimension]
     held = [node for node in case.node if is_held(case, node)]
     guided = [node for node in case.node if is_guided(case, node)]
@@ -75,7 +75,7 @@ def _tied(case: TrussCase) -> list[str]:
 
 
 def _what(case: TrussCase) -> str:
-    """Return the noun for the difference between end and start of a run."""
+    """Return the noun for the change from the start to the end of a run: the jump or another change."""
     if case.ending is None:
         return f"state jump after {case.thermal.cycles} cycle(s)"
     if case.ending.returns:
@@ -84,7 +84,7 @@ def _what(case: TrussCase) -> str:
 
 
 def summary_lines(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return the printed summary of runs: the nodes with the largest jumps, events, energy residue."""
+    """Return the lines that summarise runs: the nodes with the largest jumps, events, energy residue."""
     first, *others = runs.values()
     axes = "xyz"[: case.truss.dimension]
     header = ["node", *(f"along {axis} [m]" for axis in axes), "length [m]", *("DEM, length [m]" for _ in others)]

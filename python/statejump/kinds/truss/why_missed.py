@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Possible reasons for a missed tolerance of a truss, and its slowest natural period."""
+"""Possible reasons why a truss misses a tolerance, and the slowest natural period of a truss."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -29,9 +29,9 @@ LEAST_STIFFNESS = 1e-12
 
 
 def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> list[str]:
-    """Return possible reasons, one sentence each.
+    """Return possible reasons for a missed tolerance, one sentence each.
 
-    :param jump_scale_m: reference of differences of jumps
+    :param jump_scale_m: reference for differences of jumps [m]
     """
     if "kinetic_energy_J" in exact.energy:  # in motion, as the DEM
         return []
@@ -59,7 +59,7 @@ def slowest_natural_period_s(path: TrussPath) -> float:
     """Return the longest natural period [s] of a truss whose joints all stick, at the start of its path.
 
     Masses are lumped as in the DEM. Links, springs, torsion springs and contacts act as springs, and tension adds
-    lateral stiffness. Infinite if a part has no stiffness.
+    lateral stiffness. The period is infinite if a part of the truss has no stiffness.
     """
     truss = path.truss
     mass = np.repeat(lumped_mass_kg(truss), 3)
@@ -99,7 +99,7 @@ def _stiffness(path: TrussPath) -> Any:
         return way / length[:, None], length
 
     def between(nodes: np.ndarray, blocks: np.ndarray) -> Any:
-        """Return springs of stiffness (k, 3, 3) between pairs of nodes, or to ground for a single node or GROUND."""
+        """Return stiffness matrices (k, 3, 3) of springs between pairs of nodes, or from a single node to ground."""
         sides = [(one, other, 1.0 if one == other else -1.0)
                  for one in range(nodes.shape[1]) for other in range(nodes.shape[1])]
         rows, columns, values = [], [], []

@@ -180,7 +180,7 @@ class UmbrellaCase(Case):
         return self.joint.journal_radius_m + self.joint.radial_clearance_m
 
     def clearance_m(self, temperature_change_K: float) -> float:
-        """Return the radial clearance [m] at ΔT; both radii expand with the full ΔT."""
+        """Return the radial clearance [m] at ΔT. Both radii expand with the full ΔT."""
         joint = self.joint
         return joint.radial_clearance_m + temperature_change_K * (
             joint.bearing_thermal_expansion_per_K * self.bearing_radius_m
@@ -188,7 +188,7 @@ class UmbrellaCase(Case):
         )
 
     def link_lengths_m(self, temperature_change_K: Any) -> tuple[Any, Any]:
-        """Return the stress-free lengths of AB and BC [m] at ΔT, a number or an array."""
+        """Return the stress-free lengths of AB and BC [m] at ΔT. ΔT is a number or an array."""
         ab, bc = (
             link.stress_free_length_m * (1 + link.thermal_expansion_per_K * temperature_change_K)
             for link in (self.link_ab, self.link_bc)
@@ -197,19 +197,19 @@ class UmbrellaCase(Case):
 
     @property
     def ideal_position_m(self) -> tuple[float, float]:
-        """Position x and y [m] at which the unloaded links AB and BC meet at ΔT = 0, above AC."""
+        """Ideal position: x and y [m] of the point above AC at which the unloaded links AB and BC meet at ΔT = 0."""
         x, y = apex_m(*self.link_lengths_m(0.0), self.frame.length_m)
         return float(x), float(y)
 
     @property
     def theta2_rad(self) -> float:
-        """Direction of AB, from A to B, at the ideal position [rad]."""
+        """Direction of AB, from A to B, if B is at the ideal position [rad]."""
         x, y = self.ideal_position_m
         return atan2(y, x)
 
     @property
     def theta4_rad(self) -> float:
-        """Direction of BC, from C to B, at the ideal position [rad]."""
+        """Direction of BC, from C to B, if B is at the ideal position [rad]."""
         x, y = self.ideal_position_m
         return atan2(y, x - self.frame.length_m)
 
@@ -235,8 +235,8 @@ class UmbrellaCase(Case):
 
     @property
     def is_reproducible(self) -> bool:
-        """Whether the whole history can be compared point by point; otherwise only the heating. With damping of links
-        and pins, small differences decay. Without it they grow to the size of the clearance."""
+        """Whether the whole history can be compared point by point; otherwise only heating can. Damping of links and
+        pins makes small differences decay; without it they grow to the size of the clearance."""
         return self.damping.axial_damping_ratio > 0 and self.damping.pin_damping_N_m_s_per_rad > 0
 
     @property

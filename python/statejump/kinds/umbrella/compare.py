@@ -25,12 +25,12 @@ def largest_temperature(run: Run) -> int:
 
 
 def energy_residual(run: Run) -> float:
-    """Return supplied minus stored minus dissipated energy over the whole run [J]."""
+    """Return supplied minus stored minus dissipated energy [J], over the whole run."""
     return energy_residue_J(run.energy, ("thermal_work_J",), STORED, DISSIPATED)
 
 
 def _energy_row(case: UmbrellaCase, reduced: Run, dem: Run) -> Quantity:
-    """Return the row of both energy residues, divided by the largest energy in the DEM run."""
+    """Return the row with the energy residues of both models, divided by the largest energy in the DEM run."""
     about = sum(dem[name] for name in STORED) + sum(dem[name] for name in DISSIPATED)
     scale = float(np.max(about))
     tolerance = case.tolerance.energy_balance_relative
@@ -41,14 +41,13 @@ def _energy_row(case: UmbrellaCase, reduced: Run, dem: Run) -> Quantity:
 
 
 def first_contact_K(run: Run) -> float | None:
-    """Return ΔT [K] of the first contact as located by the model; None: the clearance never closed."""
+    """Return ΔT [K] of the first contact as the model located it; None if the clearance never closed."""
     found = run.events.first("first_contact")
     return None if found is None else found.temperature_change_K
 
 
 def _first_contact_rows(case: UmbrellaCase, reduced: Run, dem: Run) -> list[Quantity]:
-    """Return the rows of the first contact: both models against the closed form if it applies, else against each
-    other."""
+    """Return the rows of the first contact: each model against the closed form or, if that is invalid, both models."""
     tolerance = case.tolerance
     ours, other = first_contact_K(reduced), first_contact_K(dem)
     exact = closed_form_first_contact(case)
@@ -64,9 +63,9 @@ def _first_contact_rows(case: UmbrellaCase, reduced: Run, dem: Run) -> list[Quan
 
 
 def closed_form_first_contact(case: UmbrellaCase) -> float | None:
-    """Return ΔT_c = c/(α |AC|) [K] of the first contact; infinity: the clearance never closes. None: the formula does
-    not apply; it requires heating from a concentric start, links without vibration, and no torsion spring before
-    contact."""
+    """Return ΔT_c = c/(α |AC|) [K] of the first contact; infinity if the clearance never closes. Return None if the
+    formula is invalid: it requires heating from a concentric start, links without vibration, and no torsion spring
+    before contact."""
     first_heats = float(case.thermal_program().temperature_rate(0.0)) > 0
     expansions_agree = (
         case.link_ab.thermal_expansion_per_K == case.link_bc.thermal_expansion_per_K
@@ -79,8 +78,8 @@ def closed_form_first_contact(case: UmbrellaCase) -> float | None:
 
 
 def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
-    """Compare two runs at the same times: jumps and largest differences of both angles. A chaotic history is compared
-    until the largest temperature, see :func:`compare`."""
+    """Compare two runs at the same times: jumps, and largest differences of both angles. A chaotic history is compared
+    only until the largest temperature, see :func:`compare`."""
     tolerance = case.tolerance
     reproducible = case.is_reproducible
     rows = []
@@ -107,9 +106,8 @@ def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
 def compare(case: UmbrellaCase, reduced: Run, dem: Run) -> Comparison:
     """Compare a DEM run with the reduced run of the same case.
 
-    A damped case is compared over its whole program. Without damping, the motion after contact is chaotic. The
-    point-by-point comparison then ends at the largest temperature; ``statejump figures`` compares ensembles for the
-    rest.
+    A damped case is compared over its whole program. Without damping, the motion after contact is chaotic. Runs are
+    then compared point by point only until the largest temperature; ``statejump figures`` compares ensembles after it.
     """
     rows = [] if case.start.mode == "loaded" else _first_contact_rows(case, reduced, dem)
     rows += history_rows(case, reduced, dem)
@@ -128,7 +126,7 @@ def difference(case: UmbrellaCase, first: Run, second: Run) -> list[Quantity]:
 
 
 def outcomes(case: UmbrellaCase, run: Run) -> dict[str, float]:
-    """Return jumps and ranges of both angles, first contact, contacts and energy residue; NaN: it did not happen."""
+    """Return jumps and ranges of both angles, first contact, contacts and energy residue; NaN: no such event."""
     said = run.summary
     # The reduced model sums energy in every step, the DEM only at its samples.
     residue = said["energy_residue_J"] if "energy_residue_J" in said else energy_residual(run)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DEM runs of an ``umbrella`` case in YADE: input of the script, and single runs."""
+"""DEM runs of an ``umbrella`` case in YADE: input of the script, and single runs with an offset."""
 from __future__ import annotations
 
 from typing import Any
@@ -19,9 +19,9 @@ def number_of_steps(case: UmbrellaCase) -> int:
 
 
 def dem_input(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> dict[str, Any]:
-    """Return the input of the YADE script. The initial state is given as positions and velocities of the link tips.
+    """Return the input of the YADE script. It gives the initial state as positions and velocities of the link tips.
 
-    :param offset_m: offset (2) [m] added to the initial position of the journal
+    :param offset_m: offset (2) [m] to add to the initial position of the journal
     """
     values = common_values(case, number_of_steps(case))
     state = reduced.start_state(case, offset_m)
@@ -33,6 +33,6 @@ def dem_input(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> dict[st
 
 
 def execute(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> Samples:
-    """Run the case in YADE with an offset of the start; see :func:`dem_input`."""
+    """Run the case in YADE with an offset of the initial position of the journal; see :func:`dem_input`."""
     values = {"scene": of(case).scene_module(), **dem_input(case, offset_m)}
     return yade_process.execute(values, lambda share: None)

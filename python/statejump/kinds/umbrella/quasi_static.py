@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The quasi-static path of a loaded rib: the limit of its motion under infinitely slow heating."""
+"""The quasi-static path of a loaded rib, which its motion approaches under infinitely slow heating."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -30,8 +30,9 @@ class QuasiStatic:
     :param case: name of the case
     :param notes: notes on the temperature program
     :param has_jump: whether the program returns to the reference temperature
-    :param paths: paths by type of links: ``rigid`` with rigid contact and Coulomb friction; ``elastic`` with Hertz
-        contact and the compliance of the friction law, if the laws of the case permit this path
+    :param paths: paths by type of links. The path ``rigid`` has rigid links, rigid contact and Coulomb friction. The
+        path ``elastic`` has Hertz contact and the compliance of the friction law; it exists if the laws of the case
+        permit it
     """
 
     case: str
@@ -46,20 +47,20 @@ class QuasiStatic:
         return self.paths[links]
 
     def frame(self, links: str = RIGID) -> pandas.DataFrame:
-        """Return the samples of a path, with units in the column names.
+        """Return the samples of the path with the given type of links, with units in the column names.
 
-        :raises NotAllowed: the path does not exist
+        :raises NotAllowed: there is no such path
         """
         return libraries.frame(self._path(links).columns())
 
     def events(self, links: str = RIGID) -> pandas.DataFrame:
-        """Return one row per transition to rolling or slip. :raises NotAllowed: the path does not exist"""
+        """Return one row per transition to rolling or to slip. :raises NotAllowed: there is no such path"""
         return libraries.frame(self._path(links).events)
 
     @property
     def summary(self) -> dict[str, float]:
-        """Jumps of both angles on every path. NaN: the program does not return, or the contact opens on the path, after
-        which the position of the journal is undetermined."""
+        """Jumps of both angles on every path. A jump is NaN if the program does not return to ΔT = 0, or if the contact
+        opens on the path, because then the position of the journal is undetermined."""
         return {f"{key.removesuffix('_rad')}_{links}_rad":
                 float(getattr(path, key)) if self.has_jump and not path.separated else float("nan")
                 for links, path in self.paths.items() for key in JUMPS}
@@ -94,7 +95,7 @@ class QuasiStatic:
 
 
 def has_elastic_loop(case: UmbrellaCase) -> bool:
-    """Return whether the path with elastic links supports the contact laws of a case."""
+    """Return whether the contact laws of a case permit the path with elastic links."""
     velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
     return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
@@ -102,7 +103,7 @@ def has_elastic_loop(case: UmbrellaCase) -> bool:
 def quasi_static(case: UmbrellaCase) -> QuasiStatic:
     """Return the quasi-static paths of a rib whose torsion spring loads the joint.
 
-    :raises FailedRun: the joint is unloaded at the start, or a law left its range
+    :raises FailedRun: the joint is unloaded at the start, or a contact law was used outside its range
     """
     angle, program = case.start.contact_angle_rad, case.thermal_program()
     with engine("the quasi-static path failed", case=case.name):

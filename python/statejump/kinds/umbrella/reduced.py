@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reduced model of an ``umbrella`` case: single runs, and the quasi-static path."""
+"""Reduced model of an ``umbrella`` case: motion of the links, and their quasi-static path."""
 from __future__ import annotations
 
 
@@ -18,7 +18,7 @@ def _link(link: UmbrellaLink) -> _engine.ThermalLink:
 
 
 def linkage(case: UmbrellaCase) -> _engine.Linkage:
-    """Return the engine's model of a case. :raises ValueError: a changed case is out of range"""
+    """Return the engine's model of a case. :raises ValueError: a value of the case is out of range"""
     joint = case.joint.to_dict()
     del joint["radial_clearance_m"]
     return _engine.Linkage(
@@ -36,7 +36,7 @@ def linkage(case: UmbrellaCase) -> _engine.Linkage:
 def start_state(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine.LinkageState:
     """Return the state at t = 0.
 
-    :param offset_m: offset (2) [m] added to the initial position of the journal; not for a ``loaded`` start
+    :param offset_m: offset (2) [m] to add to the initial position of the journal; not for a ``loaded`` start
     """
     model, start = linkage(case), case.start
     if start.mode == "loaded":
@@ -50,10 +50,10 @@ def start_state(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engi
 
 
 def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine.LinkageRun:
-    """Integrate a case over its whole program.
+    """Integrate the motion of a case over its whole program.
 
     :param offset_m: see :func:`start_state`
-    :raises FailedRun: a law left its range, or the steps are too long; the message has time and temperature
+    :raises FailedRun: a contact law was used outside its range, or steps are too long; the message has the time
     """
     with engine("the reduced run failed", case=case.name):
         model, program, start = linkage(case), case.thermal_program(), start_state(case, offset_m)
@@ -74,8 +74,8 @@ def run(case: UmbrellaCase, on_progress: OnProgress = lambda share: None, offset
 
 
 def quasi_static(case: UmbrellaCase, samples: int = 400) -> _engine.JointLoop | None:
-    """Return the path of the loaded joint with rigid links and exact friction; None if statics does not determine the
-    path."""
+    """Return the quasi-static path of the loaded joint with rigid links and exact friction; None if statics does not
+    determine the path."""
     try:
         return _engine.joint_loop(
             linkage(case), case.thermal_program(), case.start.contact_angle_rad, samples

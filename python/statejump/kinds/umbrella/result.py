@@ -34,8 +34,8 @@ def names(case: UmbrellaCase) -> dict[str, list[str]]:
 
 
 def scene(case: UmbrellaCase) -> dict[str, Any]:
-    """Return frame, two links, and the journal of BC in the bearing of AB, for drawings; both rotate with their
-    links."""
+    """Return the scene for drawings: frame, two links, and the journal of BC in the bearing of AB. Journal and bearing
+    rotate with their links."""
     joint, frame = case.joint, case.frame.length_m
     pins: dict[str, drawing.Point] = {"link_ab": [0.0, 0.0, 0.0], "link_bc": [frame, 0.0, 0.0]}
     tips: dict[str, drawing.Point] = {
@@ -67,8 +67,8 @@ def scene(case: UmbrellaCase) -> dict[str, Any]:
 
 
 def _contacts(case: UmbrellaCase, history: Columns) -> dict[str, Column]:
-    """Return force, state and position of the contact. n points from the centre of the bearing to that of the journal.
-    The bearing pushes the journal along -n; friction acts along n rotated by +90 degrees."""
+    """Return force, state and position of the contact. The unit vector n points from the centre of the bearing to that
+    of the journal. The bearing pushes the journal along -n; friction acts along n rotated by +90 degrees."""
     change = history["temperature_change_K"]
     offset = np.stack([history["eccentricity_x_m"], history["eccentricity_y_m"], np.zeros(len(change))], axis=1)
     distance = np.linalg.norm(offset, axis=1, keepdims=True)

@@ -21,7 +21,7 @@ LABELS = {
 
 
 def describe(case: UmbrellaCase) -> list[str]:
-    """Return the description of the case in sentences, without the temperature program, common to all kinds."""
+    """Describe the case in sentences, without the temperature program, which code common to all kinds describes."""
     ab, bc, joint = case.link_ab, case.link_bc, case.joint
     sentences = [
         f"One rib of an umbrella antenna: link AB, {text(ab.stress_free_length_m, 'm')}, {ab.mass_kg:g}\u202fkg, "
@@ -38,7 +38,7 @@ def describe(case: UmbrellaCase) -> list[str]:
 
 
 def summary_lines(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return the lines that a command prints for a single model: first contact, jump, remarks of the reduced model."""
+    """Return the lines that a command prints for one model alone: first contact, jump, remarks of the reduced model."""
     if len(runs) > 1:
         return []
     found: list[Shown | str] = []
@@ -63,7 +63,7 @@ def summary_lines(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | s
 
 
 def charts(case: UmbrellaCase) -> list[Chart]:
-    """Return charts: both deflections over temperature, trajectory of the journal in its clearance, contact force."""
+    """Return the charts: deflections of both links over temperature, trajectory of the journal, contact force."""
     return [
         Chart(TEMPERATURE, Axis("theta2_rad", "Deflection of AB, θ2 − θ2(0)", from_start=True),
               "Deflection-temperature loop", marks=True),

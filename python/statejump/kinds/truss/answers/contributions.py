@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contributions of the joints to the jump of a truss: the effect of their friction forces on the truss without
-friction."""
+"""Contributions of the joints to the jump of a truss: the effect that their friction forces have on the truss with
+frictionless joints."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -18,8 +18,8 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 @dataclass(frozen=True)
 class Contributions:
-    """Contribution of every joint to the jump of an output. ``sum_error``: sum of the contributions divided by the
-    jump, minus 1."""
+    """Contribution of every joint to the jump of an output. ``sum_error`` is the sum of all contributions divided by
+    the jump, minus 1."""
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]
@@ -40,8 +40,8 @@ class Contributions:
 
 
 def friction_loads(truss: ResolvedTruss, state: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return nodal forces [N] (joints, nodes, 3) that represent the friction of each joint in a state, type by type.
-    Joints with unknown friction have none."""
+    """Return nodal forces [N] (joints, nodes, 3) that represent the friction of each joint in a state of the truss.
+    Joints are sorted by type. A joint with unknown friction has zero forces."""
     place = truss.nodes.position_m + state["displacement_m"]
     found = []
     for joint in JOINTS:
@@ -53,7 +53,7 @@ def friction_loads(truss: ResolvedTruss, state: Mapping[str, np.ndarray]) -> np.
 
 
 def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
-    """Return the truss with frictionless joints that stays at ΔT = 0."""
+    """Return the truss with frictionless joints and with all temperatures held at ΔT = 0."""
     for joint in JOINTS:
         truss = joint.without_friction(truss)
     # No item uses the programs any more, but all programs must have one duration.
@@ -66,14 +66,14 @@ def contributions(
 ) -> Contributions:
     """Return the contribution of each joint's friction to the jump of an output.
 
-    At the end of the cycles, friction holds the truss away from its initial shape. A truss with frictionless joints,
+    At the end of the cycles, friction keeps the truss from its initial shape. The truss with frictionless joints,
     loaded by the friction forces, is in equilibrium in the same shape. Let f_j be the change of the friction force of
     joint j since the start, F0 and F1 the forces of all joints at start and end, and y the output of the truss with
-    frictionless joints. The contribution of joint j is the mean of its effect alone, y(F0 + f_j) - y(F0), and of its
-    effect as the last one, y(F1) - y(F1 - f_j). The sum of contributions equals the jump of a linear truss exactly, and
-    that of another truss with an error of third order.
+    frictionless joints. The contribution of joint j is the mean of two differences: f_j added to the initial forces,
+    y(F0 + f_j) - y(F0), and f_j added last, y(F1) - y(F1 - f_j). The sum of contributions equals the jump exactly if
+    the truss is linear, otherwise up to an error of third order.
 
-    :raises FailedRun: without friction the truss is a mechanism or has no equilibrium
+    :raises FailedRun: the truss with frictionless joints is a mechanism or has no equilibrium
     """
     truss, ends = found.truss, found.cycle_ends
     free = without_friction(truss)

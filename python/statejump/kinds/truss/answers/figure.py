@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures of a truss' answers: the truss with magnified jumps, the ranking of its joints."""
+"""Figures for the answers on a truss: the truss with magnified jumps, and the ranking of its joints."""
 from __future__ import annotations
 
 from math import floor, log10
@@ -39,7 +39,7 @@ def readable(value: float, unit: str) -> tuple[float, str]:
 
 
 def magnification(truss: ResolvedTruss, largest_jump_m: float) -> float:
-    """Return the round factor that magnifies the largest jump to about SHOWN times the size of the truss."""
+    """Return a round factor that magnifies the largest jump to about SHOWN times the size of the truss."""
     if largest_jump_m == 0:
         return 1.0
     wanted = SHOWN * float(np.ptp(truss.nodes.position_m, axis=0).max()) / largest_jump_m
@@ -53,7 +53,7 @@ def joint_places(truss: ResolvedTruss) -> np.ndarray:
 
 
 def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> Figure:
-    """Draw the truss in the reference configuration and with magnified jumps; numbers mark the first MARKED joints."""
+    """Draw the truss in its reference configuration and with magnified jumps; number the first MARKED joints."""
     truss = found.truss
     jump = node_jumps(found)[-1]
     jump = np.where(np.linalg.norm(jump, axis=1, keepdims=True) > rounding_m(found), jump, 0.0)
@@ -114,7 +114,7 @@ def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> 
 
 
 def _mark(panel: Axes, truss: ResolvedTruss, shares: Contributions, places: np.ndarray) -> None:
-    """Draw numbers at the joints with the largest contributions, on the outside of the truss."""
+    """Draw rank numbers beside the joints with the largest contributions, on the outside of the truss."""
     nodes, middle = joint_places(truss), places.mean(axis=0)
     extent = np.ptp(places, axis=0).max()
     for rank, joint in enumerate(shares.order[:MARKED], start=1):
@@ -135,7 +135,7 @@ def _mark(panel: Axes, truss: ResolvedTruss, shares: Contributions, places: np.n
 
 
 def ranking_figure(shares: Contributions, output: Output, title: str) -> Figure:
-    """Draw bars of the largest contributions, of all others together, of their sum, and of the jump."""
+    """Draw bars for the largest contributions, for all other joints together, for the sum, and for the jump."""
     factor, unit = readable(shares.jump, output.unit)
     order = shares.order[np.abs(shares.contribution[shares.order]) > 0]
     shown, rest = order[:MOST_BARS], order[MOST_BARS:]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Jumps of a truss after each cycle of the quasi-static path: displacement at the end of a cycle minus that at the
-start."""
+"""Jumps of a truss after each cycle of the quasi-static path: displacement at the end of the cycle minus displacement
+at the start of the path."""
 from __future__ import annotations
 
 from typing import Any
@@ -15,12 +15,12 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 def quick_path(truss: ResolvedTruss, increments_per_branch: int = 50, on_progress: OnProgress = lambda share: None,
                **more: Any) -> TrussPath:
-    """Return the path with only those events located that affect the state; its ends of cycles are unchanged."""
+    """Return the path with only the events located that affect the state; ends of cycles are unchanged."""
     return whole_path(truss, on_progress, increments_per_branch=increments_per_branch, locate_events=False, **more)
 
 
 def node_jumps(found: TrussPath) -> np.ndarray:
-    """Return the jump [m] (cycles, nodes, 3) of every node from the start to the end of each cycle."""
+    """Return the jump [m] (cycles, nodes, 3) of every node from the start of the path to the end of each cycle."""
     ends = found.cycle_ends["displacement_m"]
     return ends[1:] - ends[0]
 

@@ -18,8 +18,8 @@ from statejump.kinds.truss.solve import TrussPath
 class Output:
     """An output of a truss whose jump is divided among the joints.
 
-    :param short: the output in a few words
-    :param value: the output as a function of displacements (nodes, 3), along the jump
+    :param short: short name of the output
+    :param value: the output as a function of displacements (nodes, 3), projected on the direction of the jump
     :param vector: all components of the output as a function of displacements
     """
 
@@ -45,14 +45,13 @@ class Output:
         return np.linalg.norm(motion, axis=1)
 
     def rounding(self, found: TrussPath) -> float:
-        """Return the largest change that counts as rounding; for a tilt [rad] it is relative to the size of the
-        truss."""
+        """Return the largest change that counts as rounding; for a tilt [rad] it is relative to the truss size."""
         size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
         return rounding_m(found) / size if self.unit == "rad" else rounding_m(found)
 
 
 def node_output(found: TrussPath, name: str | None = None) -> Output:
-    """Return the displacement [m] of a node along its jump; without a name, of the node that moves most.
+    """Return the output "displacement [m] of a node along its jump"; without a name, that of the node that moves most.
 
     :raises NotAllowed: the node does not exist
     """
@@ -69,7 +68,7 @@ def node_output(found: TrussPath, name: str | None = None) -> Output:
 
 
 def rms_output(found: TrussPath, surface: reflector.Surface) -> Output:
-    """Return the RMS [m] over the surface of the changes of the best-fit residuals by the jump."""
+    """Return the output "RMS [m] over the surface of how the best-fit residuals change"."""
     ends = found.cycle_ends["displacement_m"]
     start = surface.fit(ends[0]).residual_m
     change = surface.fit(ends[-1]).residual_m - start
@@ -92,9 +91,9 @@ def tilt_output(found: TrussPath, surface: reflector.Surface) -> Output:
 
 
 def chosen_output(found: TrussPath, name: str) -> Output:
-    """Return the output of a name: ``node`` (the one that moves most), ``node:NAME``, ``rms``, ``tilt``.
+    """Return the output with the given name: ``node`` (the node that moves most), ``node:NAME``, ``rms`` or ``tilt``.
 
-    :raises NotAllowed: the name is unknown
+    :raises NotAllowed: the name is not that of an output
     """
     if name == "node" or name.startswith("node:"):
         return node_output(found, name[5:] or None if name != "node" else None)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Error of a reflecting surface against its best-fit paraboloid; for planar trusses a parabola.
+"""Error of a reflecting surface relative to its best-fit paraboloid (a parabola for planar trusses).
 
-The last axis of the frame is that of the case, and its origin is the mean of the nodes in the reference configuration.
-The paraboloid has its vertex at (shift, depth), focal length F and a tilted axis. Residuals are distances along the
-normal, to first order in the error. Least squares by scipy.
+The origin of the frame is the mean of the nodes in the reference configuration; its last axis is given by the case. The
+paraboloid has its vertex at (shift, depth), focal length F and a tilted axis. Residuals are distances along the normal,
+to first order in the error. SciPy solves the least-squares problem.
 """
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class Surface:
-    """A surface, and the parameters that its nodes determine; ``notes`` name the others."""
+    """A reflecting surface, and the parameters that its nodes determine; ``notes`` name the other parameters."""
 
     nodes: np.ndarray
     frame: np.ndarray  # (2 or 3, 3) rows: lateral axes, then the axis of the paraboloid
@@ -45,7 +45,7 @@ class Surface:
     notes: tuple[str, ...]
 
     def fit(self, displacement_m: np.ndarray) -> Fit:
-        """Return the best fit for the given displacements (n, 3) of the nodes."""
+        """Return the best-fit paraboloid for displacements (n, 3) of all nodes of the truss."""
         points = self.drawn_m + displacement_m[self.nodes] @ self.frame.T
         found = _fit(points, self.free, self.held)
         values = {**self.held, **dict(zip(self.free, found.x))}
@@ -65,8 +65,8 @@ def _names(kind: str, lateral: int) -> list[str]:
 def _residual(
     points: np.ndarray, values: dict[str, float], with_slopes: bool = False
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return distances [m] (n,) along the normal of points rotated by -tilt and, on request, their derivatives by every
-    parameter."""
+    """Return distances [m] (n,) of points, rotated by -tilt, along the normal and, on request, their derivatives by
+    every parameter."""
     lateral = points.shape[1] - 1
     across, along = points[:, :lateral], points[:, lateral]
     tilt = np.array([values[name] for name in _names("tilt", lateral)])
@@ -93,7 +93,7 @@ def _residual(
         return found, {}
 
     def slope(height: np.ndarray | float, by_squared: np.ndarray | float, by_curvature: float = 0.0) -> np.ndarray:
-        """Return the effect of a parameter on the residual, from its effects on height, squared distance, curvature."""
+        """Return the derivative of the residual by a parameter, from those of height, squared distance, curvature."""
         lower = 4 * curvature * (2 * squared * by_curvature + curvature * by_squared)
         return np.asarray((height - by_curvature * squared - curvature * by_squared) / root
                           - found * lower / (2 * below))
@@ -131,10 +131,10 @@ def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # 
 
 
 def surface(truss: ResolvedTruss) -> Surface | None:
-    """Return the reflecting surface of a truss; None if it has none, or too few nodes for a plane.
+    """Return the reflecting surface of a truss; None if the truss has none, or if its nodes are too few for a plane.
 
-    Parameters that the nodes do not determine are held: first the lateral shift of the vertex (not the tilt), then the
-    curvature.
+    Parameters that the nodes do not determine are held constant: first the lateral shift of the vertex (not the tilt),
+    then the curvature.
     """
     if truss.reflector is None:
         return None
@@ -154,11 +154,11 @@ def surface(truss: ResolvedTruss) -> Surface | None:
 def _parameters(
     drawn: bytes, dimension: int, focal_length_m: float | None
 ) -> tuple[tuple[str, ...], dict[str, float], tuple[str, ...]] | None:
-    """Return the parameters that nodes determine, the held ones, and the reasons; None if they determine no plane.
+    """Return the parameters that nodes determine, the held ones, and the reasons; None if no plane is determined.
 
     Fits are cached, because samples of a campaign mostly share their reference configuration.
 
-    :param drawn: positions of the nodes [m], (nodes, dimension) numbers
+    :param drawn: positions of the nodes [m], (nodes, dimension) numbers as bytes
     """
     points = np.frombuffer(drawn).reshape(-1, dimension)
     lateral = dimension - 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of the tables of a truss' answers, for CSV, JSON and result files."""
+"""Rows of the tables with the answers on a truss, for CSV, JSON and result files."""
 from __future__ import annotations
 
 import math
@@ -41,7 +41,7 @@ def node_rows(found: TrussPath) -> list[Row]:
 
 
 def joint_rows(found: TrussPath) -> list[Row]:
-    """Return slide or eccentricity, its jump, and the frictional heat of every joint after each cycle."""
+    """Return the slide or eccentricity of every joint after each cycle, its jump, and its frictional heat."""
     ends, truss = found.cycle_ends, found.truss
     rows = []
     for cycle in range(1, len(ends["time_s"])):
@@ -64,7 +64,7 @@ def joint_rows(found: TrussPath) -> list[Row]:
 
 
 def surface_rows(found: TrussPath, surface: reflector.Surface) -> list[Row]:
-    """Return the best fit at the start, at the hottest point and after every cycle."""
+    """Return the best-fit paraboloid at the start, at the hottest point and after every cycle, as rows."""
     states, ends = found.states, found.cycle_ends
     hottest = int(np.argmax(states["temperature_change_K"]))
     asked = [("start", 0.0, ends["displacement_m"][0]),
@@ -97,7 +97,7 @@ def contribution_rows(shares: Contributions) -> list[Row]:
 
 
 def sensitivity_rows(found: Sequence[Sensitivity], jump: float) -> list[Row]:
-    """Return the sensitivities; ``elasticity``: relative change of the jump per relative change."""
+    """Return the sensitivities. ``elasticity``: relative change of the jump per relative change of the parameter."""
     return [
         {"parameter": row.parameter, "items": row.items, "value": row.value,
          "elasticity": _known(row.per_relative_change / jump), "elasticity_half_step": _known(row.half_step / jump),

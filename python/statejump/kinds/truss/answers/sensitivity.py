@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sensitivities of the jump of an output to friction, clearances, stiffnesses and preloads: central differences."""
+"""Sensitivities of the jump of an output to friction, clearances, stiffnesses and preloads, by central differences."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
@@ -34,7 +34,7 @@ class Sensitivity:
 
     @property
     def per_unit(self) -> float | None:
-        """Change of the jump per unit of the parameter; None if the items differ."""
+        """Change of the jump per unit of the parameter; None if the items have different values."""
         return None if self.value is None else self.per_relative_change / self.value
 
 
@@ -53,7 +53,7 @@ def _part(truss: ResolvedTruss, section: str) -> Any:
 
 
 def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) -> ResolvedTruss:
-    """Return the truss with one parameter of every item times a factor (items,)."""
+    """Return the truss with one parameter of every item multiplied by a factor (items,)."""
     part = _part(truss, section)
     part = replace(part, **{key: getattr(part, key) * factor})
     for element in ELEMENTS:
@@ -63,8 +63,8 @@ def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) ->
 
 
 def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:
-    """Return the sequence of statuses of every joint. The order of different joints within one increment is not
-    defined."""
+    """Return the sequence of statuses of every joint. The order in which different joints change within one increment
+    is not defined."""
     histories: dict[tuple[str, str], list[str]] = {}
     for event in found.events:
         histories.setdefault((event.joint_kind, event.name), [event.before]).append(event.after)
@@ -75,12 +75,12 @@ def sensitivities(
     found: TrussPath, output: Output, *, each: bool = False, step: float = STEP,
     on_progress: OnProgress = lambda share: None,
 ) -> list[Sensitivity]:
-    """Return the sensitivities of an output's jump. Parameters that are 0 or missing are omitted.
+    """Return the sensitivities of an output's jump to all parameters. Parameters that are 0 or missing are omitted.
 
-    A parameter is changed by ±step and ±step/2 of its value: all items of a section together or, with ``each``, one by
-    one. The verdict is "not differentiable" in two cases: the one-sided slopes differ by more than AGREE at both steps,
-    or both steps disagree and the sequence of statuses of a joint depends on the change. "steps disagree": the slopes
-    of both steps differ by more than AGREE for another reason.
+    A parameter is changed by ±step and ±step/2 of its value, in all items of a section together or, with ``each``, one
+    by one. Both steps disagree if their slopes differ by more than AGREE. The verdict is "not differentiable" in two
+    cases: the one-sided slopes differ by more than AGREE at both steps, or both steps disagree and the sequence of
+    statuses of a joint depends on the change. If they disagree for another reason, the verdict is "steps disagree".
     """
     truss, own_jump = found.truss, output.jump(found)
     asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []
@@ -111,10 +111,10 @@ def differences(
     truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, own_jump: float,
     step: float = STEP,
 ) -> tuple[float, float, str]:
-    """Return the derivative of an output's jump by the logarithm of a parameter of some items (items,), that with half
-    the step, and the verdict, see :func:`sensitivities`.
+    """Return the derivative of an output's jump by the logarithm of a parameter of some items, the same derivative with
+    half the step, and the verdict, see :func:`sensitivities`.
 
-    :raises StatejumpError: a changed truss has no path
+    :raises StatejumpError: a changed truss has no quasi-static path
     """
     jumps: list[float] = []
     slopes, gaps, histories = [], [], []

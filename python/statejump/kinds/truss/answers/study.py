@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Design questions of a truss, computed together: jumps, verdict, ranking of joints, surface, sensitivities."""
+"""Answers to the design questions of a truss: jumps, verdict, ranking of joints, surface, sensitivities."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -55,10 +55,10 @@ class TrussAnswers:
     """Answers to the design questions of a truss.
 
     :param case: the case, with the number of cycles that were run
-    :param record: jump, verdict, notes and tables, as in the result file
+    :param record: jump, verdict, notes and tables, as stored in the result file
     :param run: the quasi-static path
     :param output: the output whose jump is divided among the joints
-    :param checked: whether jumps settle over the cycles
+    :param checked: the verdict on whether the jump settles over the cycles
     :param shares: contribution of each joint to the jump; None: there is no jump, or no equilibrium without friction
     """
 
@@ -77,7 +77,7 @@ class TrussAnswers:
 
     @property
     def jump(self) -> float:
-        """Jump of the output over all cycles, in the unit of ``record.unit``."""
+        """Jump of the output over all cycles; ``record.unit`` is its unit."""
         return self.record.summary["jump"].value
 
     @property
@@ -92,8 +92,8 @@ class TrussAnswers:
 
     @property
     def tables(self) -> dict[str, list[dict[str, Any]]]:
-        """Rows by table: ``cycles``, ``node_jumps``, ``joint_jumps``, ``surface``, ``contributions``,
-        ``sensitivities``; only those that were requested and exist."""
+        """Rows of the tables ``cycles``, ``node_jumps``, ``joint_jumps``, ``surface``, ``contributions`` and
+        ``sensitivities``, as far as they were requested and exist."""
         return self.record.tables
 
     def frame(self, table: str) -> pandas.DataFrame:
@@ -105,7 +105,7 @@ class TrussAnswers:
         return _JUMPS(self.path, self.shares, self.case.title)
 
     def plot_ranking(self) -> Figure:
-        """Draw the ranking of the joints. :raises StatejumpError: no joints are ranked"""
+        """Draw the ranking of the joints. :raises StatejumpError: the joints could not be ranked"""
         if self.shares is None:
             raise StatejumpError(code="no_ranking", cause="; ".join(self.notes), case=self.case.name)
         return _RANKING(self.shares, self.output, self.case.title)
@@ -114,7 +114,7 @@ class TrussAnswers:
         """Write result file, tables, figures and ``answers.md``, and return their paths.
 
         :param folder: an existing folder
-        :param frames: number of files for ParaView, evenly spread over the path; 0: none
+        :param frames: number of files for ParaView, evenly spread over the path; 0: no such files
         """
         return _WRITTEN(self, folder, frames, phase)
 
@@ -128,16 +128,16 @@ def study(
 ) -> TrussAnswers:
     """Answer the design questions of a truss.
 
-    :param output: the output whose jump is divided among the joints: ``node`` (the one that moves most), ``node:NAME``,
-        ``rms`` or ``tilt`` of the reflector
-    :param cycles: replaces those of the case
-    :param each: also compute the sensitivity to every single item
-    :param step: relative change of parameters for sensitivities
+    :param output: the output whose jump is divided among the joints: ``node`` (the node that moves most),
+        ``node:NAME``, or ``rms`` or ``tilt`` of the reflector
+    :param cycles: replaces the number of cycles of the case
+    :param each: whether to compute also the sensitivity to every single item
+    :param step: relative change of each parameter
     :param sensitivity: whether to compute sensitivities
-    :param phase: called with the name of the next step
+    :param phase: called with the name of each part
     :raises NotAllowed: the output does not exist, or a number is out of its range
-    :raises FailedRun: the solver finds no path
-    :raises Interrupted: Ctrl-C
+    :raises FailedRun: the solver finds no quasi-static path
+    :raises Interrupted: Ctrl-C was pressed
     """
     STEPS.check("step", step)
     case = _of_cycles(case, cycles)
@@ -197,7 +197,7 @@ def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:
 
 
 def _surface(found: TrussPath, tables: dict[str, list[rows.Row]]) -> list[str]:
-    """Add the table of the reflecting surface; return notes on its limits."""
+    """Add the table of the reflecting surface to the answers; return notes on the limits of the fit."""
     surface = reflector.surface(found.truss)
     if surface is not None:
         tables["surface"] = rows.surface_rows(found, surface)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Decides whether the jump of an output settles over the cycles. The verdict must not depend on the size of increments.
 
-Between located events, a path with rigid contacts does not depend on increments. Two groups of integrals do. Rolling on
-a radius that depends on the Hertz depth, and elastic sticking, are fourth-order accurate. Slipping balls and partial
-slip are second-order accurate: twice as many increments reduce the error of a cycle to a quarter. Two paths are
+Between located events, a path with rigid contacts does not depend on the increments. Other paths do: rolling on a
+radius that depends on the Hertz depth, and elastic sticking, are integrated with fourth order; slipping balls and
+partial slip with second order, so that twice as many increments reduce the error of a cycle to a quarter. Two paths are
 therefore compared, with n and 2 n increments per branch. For any order ≥ 1, their difference is at least the error of
 the finer path (three times this error for second order). A motion below this difference counts as unresolved.
 """
@@ -42,10 +42,10 @@ class Verdict:
 
 
 def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> tuple[Verdict, TrussPath]:
-    """Return the verdict on an output over the cycles, and the finer path.
+    """Return the verdict on whether an output settles over the cycles, and the path with twice the increments.
 
     :param found: path with the given number of increments per branch
-    :param solve: returns paths with more increments; called more than once only if two paths do not agree
+    :param solve: returns a path with more increments; called again only if two paths disagree
     """
     first = finer = solve(2 * increments)
     coarse = found
@@ -58,7 +58,7 @@ def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> t
 
 
 def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output) -> Verdict:
-    """Return the verdict from two paths. The finer one has ``increments`` per branch, twice those of the coarse one."""
+    """Return the verdict from two paths. The finer path has ``increments`` per branch, the coarse path half of them."""
     motion = output.over_cycles(finer)
     each = output.sizes(motion)
     left = output.sizes(motion - output.over_cycles(coarse))
@@ -100,7 +100,7 @@ def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output
 
 
 def others(coarse: TrussPath, finer: TrussPath, checked: Verdict, output: Output) -> list[str]:
-    """Return a note if another node continues to move although the output does not; else nothing."""
+    """Return a note if other nodes continue to move from cycle to cycle although the output does not."""
     if checked.word not in ("no jump", "shakedown") or len(checked.cycle_jump) < 2:
         return []
     moved, before = (np.diff(path.cycle_ends["displacement_m"], axis=0) for path in (finer, coarse))

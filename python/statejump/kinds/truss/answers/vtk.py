@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK files of a truss' path: lines for links and elements, points for joints, and a series with the true times."""
+"""VTK files of a truss path: lines for links and elements, points for joints, and a series with true times."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -33,13 +33,13 @@ def link_temperatures(truss: ResolvedTruss, times_s: np.ndarray) -> np.ndarray:
 
 def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
            on_progress: OnProgress = lambda share: None) -> Path:
-    """Write ``<name>.N.vtu`` and ``<name>.vtu.series`` and return the latter.
+    """Write ``<name>.N.vtu`` for some states and the series ``<name>.vtu.series``; return the path of the series.
 
     Points are the nodes in the reference configuration; ``displacement_m`` moves them (Warp By Vector). Cells are
-    links, elements between nodes, and joints as points at their first or bearing node. A missing value of a cell is
-    NaN, a missing status is 255.
+    links, elements between nodes, and joints as points at their first or bearing node. Cells without value have NaN,
+    those without status 255.
 
-    :param wanted_frames: number of states of the path, evenly spread; 0: all
+    :param wanted_frames: number of states to write, evenly spread over the path; 0: all states
     """
     truss, states = found.truss, found.states
     frames = frames_of(len(states["time_s"]), wanted_frames)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of a truss' answers: result file, tables, figures, and a page of text."""
+"""Files with the answers on a truss: result file, tables, figures, and a page of text."""
 from __future__ import annotations
 
 from pathlib import Path

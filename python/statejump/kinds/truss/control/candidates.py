@@ -28,13 +28,13 @@ STIFFNESS = "spring.*.stiffness_N_per_m"
 
 @dataclass(frozen=True)
 class Candidate:
-    """A change of a truss with one number.
+    """A change of a truss by one number.
 
     :param parameter: name of the change as the user gave it
-    :param own: the number of the unchanged case: stiffness 0, or factor 1
+    :param own: the number for the unchanged case: stiffness 0, or factor 1
     :param values: numbers to try
-    :param truss: returns the truss for a number
-    :param section: of the changed items, with their key and their indices in the changed truss
+    :param truss: function that returns the changed truss for a number
+    :param section: section of the changed items; ``key`` is their changed key, ``which`` returns their indices
     """
 
     parameter: str
@@ -53,12 +53,12 @@ class Candidate:
         return self.own == 0
 
     def size(self, value: float) -> float:
-        """Return the size of the change of the truss by a value: a stiffness [N/m], or the logarithm of a factor."""
+        """Return the size of the change for a value: the stiffness [N/m], or the absolute logarithm of the factor."""
         return value if self.is_spring else abs(log(value))
 
 
 def candidates(case: TrussCase, choices: DesignChoices) -> list[Candidate]:
-    """Return the candidates: the requested ones, or all parameters that may affect the jump.
+    """Return the candidates: the changes that the user requests, or else all parameters that may affect the jump.
 
     :raises NotAllowed: a position or a parameter is invalid
     """
@@ -76,8 +76,8 @@ def candidates(case: TrussCase, choices: DesignChoices) -> list[Candidate]:
 
 
 def with_spring(truss: ResolvedTruss, ends: Sequence[int], stiffness_N_per_m: float) -> ResolvedTruss:
-    """Return the truss with one further spring, the last one, without force in the reference configuration. With
-    stiffness 0, return the unchanged truss."""
+    """Return the truss with an additional spring, the last one, which is unloaded in the reference configuration. If
+    the stiffness is 0, return the unchanged truss."""
     if stiffness_N_per_m == 0:
         return truss
     springs, pair = truss.springs, np.array([ends])

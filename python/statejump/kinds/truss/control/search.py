@@ -30,7 +30,7 @@ ROUNDING = 1e-9  # fraction of the largest jump: smaller reversals of the curve 
 
 @dataclass(frozen=True)
 class Jump:
-    """Jump of a node, and the sequence of statuses of every joint."""
+    """Jump of a node, with the path that gives the sequence of statuses of every joint."""
 
     size_m: float
     path: TrussPath
@@ -42,16 +42,16 @@ class Jump:
 
 
 def jump_of(truss: ResolvedTruss, node: int, increments: int) -> Jump:
-    """Solve a truss for the jump of a node over all its cycles. :raises FailedRun: it has no path"""
+    """Solve a truss; return the jump of a node over all cycles. :raises FailedRun: the truss has no path"""
     found = quick_path(truss, increments, cycle_ends_only=True)
     return Jump(float(np.linalg.norm(node_jumps(found)[-1, node])), found)
 
 
 @dataclass
 class Search:
-    """One candidate, scanned and searched.
+    """One candidate: a scan of its values, and the search for the limit.
 
-    :param value: the smallest change that keeps the jump at or below the bound; None: no scanned value does
+    :param value: the smallest change that keeps the jump at or below the bound; None if no scanned value does
     """
 
     candidate: Candidate
@@ -69,7 +69,7 @@ class Search:
         return jump_of(self.candidate.truss(value), self.node, self.increments)
 
     def row(self, value: float) -> Row:
-        """Return the jump for a value as a row; empty if the truss has no path."""
+        """Return the row with the jump for a value; it has no jump if the truss has no path."""
         try:
             return Row(value, {"jump_m": self.jump(value).size_m})
         except Interrupted:
@@ -78,7 +78,7 @@ class Search:
             return Row(value, {}, str(problem))
 
     def scan(self, on_progress: OnProgress) -> None:
-        """Solve for all values of the candidate, and find where the jump reverses its slope."""
+        """Solve the truss for all values of the candidate, and find where the jump is not monotone."""
         done = counted(on_progress, len(self.candidate.values))
         for value in self.candidate.values:
             self.sweep.rows.append(self.row(value))
@@ -91,7 +91,7 @@ class Search:
         self.turns = [self.candidate.values[there[place + 1]] for place in turning]
 
     def narrow(self, wanted: float) -> None:
-        """Find all ranges of values with jumps of at most ``wanted``, and the smallest change of the truss in them."""
+        """Find all ranges of values with jumps of at most ``wanted``, and the smallest change in these ranges."""
         jumps, values = self.sweep.column("jump_m"), self.candidate.values
         self.sweep.meets = ranges_that_pass(values, list(jumps <= wanted),
                                             narrow=lambda bad, good: self._end(bad, good, wanted))
@@ -104,8 +104,8 @@ class Search:
         return min(max(low, self.candidate.own), high)
 
     def _end(self, bad: float, good: float, wanted: float) -> float:
-        """Return the value between two others at which the jump crosses ``wanted``, on the side with the smaller
-        jump."""
+        """Return the value at which the jump crosses ``wanted`` between ``bad`` and ``good``, on the side of the
+        smaller jump."""
         def excess(exponent: float) -> float:
             return self.jump(exp(exponent)).size_m - wanted
 
@@ -130,7 +130,7 @@ class Search:
         return bisect(passes, bad, good, NARROW)[1]
 
     def tell_value(self, now: Jump, wanted: float, node: str) -> None:
-        """Solve for the resulting value, also with twice the increments, and check the differentiability there."""
+        """Solve the truss with the resulting value, also with twice the increments; check the differentiability."""
         assert self.value is not None
         candidate, with_it = self.candidate, self.jump(self.value)
         finer = jump_of(candidate.truss(self.value), self.node, 2 * self.increments)

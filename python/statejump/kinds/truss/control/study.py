@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the jump of a node of a truss: smallest spring, preload, friction or other parameter that keeps the jump
-at or below a bound, and the best of several candidates."""
+"""Control of the jump of a node of a truss: search for the smallest spring, preload, friction or other parameter that
+keeps the jump at or below a bound, and for the best of several candidates."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -28,13 +28,13 @@ def control(
     case: TrussCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
-    """Sweep every candidate, and search for the values that keep the jump of a node below a bound.
+    """Sweep every candidate, and search for the values that keep the jump of a node at or below a bound.
 
-    :param jump_below: largest allowed jump [m]; None: half of that of the case
-    :param runs: must be None, because there is one path
+    :param jump_below: largest allowed jump [m]; None: half of the jump of the case
+    :param runs: must be None, because the case has only one path
     :param with_dem: not available for trusses, see ``statejump compare``
-    :param choices: node, springs that may be added, parameters that may be scaled; empty: all
-    :raises StatejumpError: invalid input, or the case has no path
+    :param choices: node, allowed springs, parameters that may be scaled; empty: the study chooses
+    :raises StatejumpError: the input is invalid, or the case has no path
     """
     check_wanted(jump_below, "m")
     refuse_runs(runs, case)

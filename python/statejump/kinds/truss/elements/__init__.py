@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registry of element types beside links, one file per type. :mod:`.protocol` documents a type."""
+"""The registry of element types other than links, one file per type. :mod:`.protocol` documents element types."""
 from __future__ import annotations
 
 from typing import Any, ClassVar

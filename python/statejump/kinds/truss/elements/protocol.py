@@ -3,8 +3,8 @@
 
 Elements have a conservative law between nodes or links. Links are part of the truss itself, because joints and
 temperatures refer to them. Case, checks, arrays, solver, result, drawing, sensitivities and input of the DEM use the
-registry (:data:`statejump.kinds.truss.elements.ELEMENTS`) and know no single type. The scene of the DEM, ``build`` in
-``yade_scripts/runner/scene_truss.py``, has a loop for each type that it supports.
+registry (:data:`statejump.kinds.truss.elements.ELEMENTS`) and know no single type. Only the scene of the DEM, ``build``
+in ``yade_scripts/runner/scene_truss.py``, has a loop for each supported type.
 """
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class Switch:
-    """An element whose stiffness is switched on or off during a run (a cable that becomes slack)."""
+    """Marks when the stiffness of an element is on or off during a run, for example of a cable that becomes slack."""
 
     element: int
     is_on: np.ndarray  # (samples,) bool
@@ -47,7 +47,7 @@ class Switch:
 
 
 class ElementType(PartType[ItemType, ArraysType]):
-    """A type of element. ``section`` is its list in a case file and its name in messages."""
+    """An element type. ``section`` is the name of its list in a case file and its name in messages."""
 
     listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
 
@@ -57,7 +57,7 @@ class ElementType(PartType[ItemType, ArraysType]):
         """Raise an error for keys that contradict each other."""
 
     def may_be_wrong_keys(self, items: ItemColumns[ItemType]) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_keys` has to check; must include all invalid ones."""
+        """Return the items (n,) that :meth:`check_keys` must check. The result must include all invalid items."""
         return np.full(len(items), False)
 
     def check_geometry(self, truss: ResolvedTruss, elements: ArraysType) -> None:
@@ -66,7 +66,7 @@ class ElementType(PartType[ItemType, ArraysType]):
     # ---------------------------------------------------------------- mechanics
 
     def ends(self, elements: ArraysType) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that the elements connect; empty (0, 2) for a type that acts on angles."""
+        """Return the pairs of nodes (k, 2) that the elements connect; empty (0, 2) for elements that act on angles."""
         return np.zeros((0, 2), dtype=int)
 
     def stiffness_N_per_m(self, elements: ArraysType) -> np.ndarray:
@@ -78,15 +78,15 @@ class ElementType(PartType[ItemType, ArraysType]):
         return np.zeros(0)
 
     def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the tension (states, k) [N] between the ends, from the type's columns."""
+        """Return the tension (states, k) [N] of each element between its ends, from the columns of the type."""
         return np.zeros((len(states["time_s"]), 0))
 
     def switches(self, elements: ArraysType, columns: Mapping[str, np.ndarray]) -> list[Switch]:
-        """Return the elements whose switching is an event, from the type's columns at the samples of a run."""
+        """Return the elements whose switching on or off is an event, from the columns of the type."""
         return []
 
     def changed(self, truss: ResolvedTruss, elements: ArraysType) -> ArraysType:
-        """Return the elements with dependent arrays updated, after one of the ``varied`` numbers changed."""
+        """Return the elements with updated dependent arrays, after a change of one of the ``varied`` numbers."""
         return elements
 
     # ---------------------------------------------------------------- drawing and sentences
@@ -96,14 +96,13 @@ class ElementType(PartType[ItemType, ArraysType]):
         return []
 
     def counted(self, items: Sequence[ItemType]) -> list[tuple[Sequence[ItemType], str]]:
-        """Return groups of items, each with the noun that summaries use for them."""
+        """Return groups of items, each with the noun by which summaries call it."""
         return [(items, self.section.replace("_", " "))]
 
     # ---------------------------------------------------------------- DEM
 
     def dem_refuses(self, elements: ArraysType) -> tuple[str, str, str] | None:
-        """Return name, error code and reason for an element that the DEM does not support, although it supports the
-        type."""
+        """Return name, error code and reason for one element that the DEM cannot represent; None if there is none."""
         return None
 
 
@@ -125,7 +124,8 @@ EndsType = TypeVar("EndsType", bound=EndsArrays)
 
 
 class BetweenNodes(ElementType[ItemType, EndsType]):
-    """An element type between two nodes: its items have ``nodes``, its arrays the fields of :class:`EndsArrays`."""
+    """An element type between two nodes. Items have the key ``nodes``, arrays the fields of :class:`EndsArrays`.
+    :class:`EndsArrays`."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         known_nodes(cast(Ended, item).nodes, 2, nodes, self.where(item.name))
@@ -144,7 +144,7 @@ class BetweenNodes(ElementType[ItemType, EndsType]):
 
 
 def check_lengths(truss: ResolvedTruss, section: str, names: Sequence[str], ends: np.ndarray) -> None:
-    """Raise StatejumpError for the first item of a section whose two end nodes (k, 2) coincide."""
+    """Raise StatejumpError for the first item of a section whose two end nodes (k, 2) are at one position."""
     for index in np.flatnonzero(distances(truss.nodes.position_m, ends) == 0)[:1]:
         nodes = [truss.nodes.names[node] for node in ends[index]]
         place = truss.nodes.position_m[ends[index, 0]][: truss.dimension].tolist()

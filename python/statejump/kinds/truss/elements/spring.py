@@ -34,7 +34,7 @@ class Spring(Item):
 
 @dataclass(frozen=True)
 class Springs(EndsArrays):
-    """Springs and cables with tension stiffness · (length - free length); the tension of a cable is at least 0."""
+    """Springs and cables. The tension is stiffness · (length - free length); that of a cable is at least 0."""
 
     names: Sequence[str]
     nodes: np.ndarray  # (k, 2) int

@@ -35,8 +35,8 @@ class TorsionSpring(Item):
 
 @dataclass(frozen=True)
 class TorsionSprings:
-    """Springs on the anticlockwise angle about the axis from the first link to the second; links point from their first
-    to their second node. Moment: stiffness · (angle - angle in the reference configuration - bias)."""
+    """Springs on the anticlockwise angle about the axis from the first link to the second; a link points from its first
+    to its second node. The moment is stiffness · (angle - angle in the reference configuration - bias)."""
 
     names: Sequence[str]
     links: np.ndarray  # (t, 2) int; (link, GROUND): the angle from the ground to one link

@@ -47,7 +47,7 @@ def finished(made: Document) -> Document:
 
 
 def tidy(values: Iterable[float]) -> list[float]:
-    """Return numbers with rounding of sines and cosines removed: 0 instead of 6e-17 or -0."""
+    """Return numbers without the rounding of sines and cosines: 0 instead of 6e-17 or -0."""
     return [round(value, 15) + 0.0 for value in values]
 
 
@@ -60,15 +60,15 @@ def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -
 
 
 def table_path(path: Path, section: str) -> Path:
-    """Return the file of the items of a list; empty if they are in the case file."""
+    """Return the path of the file that holds the items of a list."""
     return path.with_name(f"{path.stem}_{section}.csv")
 
 
 def write(made: Mapping[str, Any], path: Path, header: Sequence[str], tables: Collection[str] = ()) -> None:
-    """Write a document to a file.
+    """Write the document of a case to a file.
 
     :param header: comment lines at its head
-    :param tables: lists whose items go into CSV files beside it
+    :param tables: lists whose items go into CSV files beside the case
     :raises StatejumpError: a file cannot be written
     """
     beside = {section: table_path(path, section) for section in tables if section in made}

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rigid bodies and equations between displacements.
 
-A truss has no rotations. A rigid body is accepted if bars and springs end at one position of it. Its nodes there become
-one node, which gets the forces and masses of its other nodes. Other rigid bodies are refused. An equation becomes a
-support if it holds a node. Two nodes at one position become one if equations make all their displacements equal. If an
-equation determines the motion of a node without bars, the other nodes get the loads of that node. All other equations
-become constraints of the case.
+Nodes of a truss have no rotations. A rigid body is accepted if bars and springs end at only one position of it. Its
+nodes at this position become one node, which gets the forces and masses of the body's other nodes. An equation that
+holds a node becomes a support. If equations make all displacements of two nodes at one position equal, they become one
+node. If an equation determines the motion of a node without bars, the loads of that node move to the other nodes. All
+other equations become constraints of the case.
 """
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def named_nodes(deck: Deck) -> set[str]:
 
 
 class _Bodies:
-    """Processes the rigid bodies of a deck. Bodies that share nodes are merged."""
+    """Processes the rigid bodies of a deck. Rigid bodies that share nodes are merged."""
 
     def __init__(self, deck: Deck, turning: Turning) -> None:
         self.deck, self.turning = deck, turning
@@ -100,8 +100,8 @@ class _Bodies:
             deck.take(body.card, "nodes at one place made one; forces and masses of its other nodes act there")
 
     def _move_by_lever(self, body: RigidBody, kept: str, gone: str) -> None:
-        """Move force and mass of a node to the position where bars end. A lever arm causes a moment on the body; with
-        gravity, a mass does too."""
+        """Move a node's force and mass to the position of the rigid body at which bars end. A force on a lever arm
+        causes a moment on the body; under gravity, so does a mass."""
         deck = self.deck
         lever = np.subtract(self.places[gone], self.places[kept])
         for lines, force in ((deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
@@ -116,9 +116,9 @@ class _Bodies:
 
 
 def join(deck: Deck, one: Mapping[str, str]) -> None:
-    """Merge nodes at one position.
+    """Merge nodes that are at one position.
 
-    :param one: name of the remaining node by the name of each removed node
+    :param one: name of the remaining node, by the name of each removed node
     """
     for bar in deck.bars:
         first, second = (one.get(end, end) for end in bar.nodes)
@@ -150,7 +150,7 @@ def _move(deck: Deck, kept: str, gone: str) -> None:
 
 
 def _take_followers(deck: Deck) -> None:
-    """Convert nodes that follow means of other nodes to equations; omit nodes on which nothing acts."""
+    """Convert nodes whose motion is a mean of other nodes to equations; omit those on which nothing acts."""
     used = named_nodes(deck)
     turned = {moment.node for moment in deck.moments}
     for one in deck.followers:
@@ -165,7 +165,7 @@ def _take_followers(deck: Deck) -> None:
 
 
 def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
-    """Rewrite equations of merged nodes. Refuse equations of nodes that a rigid arm replaced."""
+    """Rewrite equations after nodes were merged. Refuse an equation with a node that a rigid arm replaced."""
     kept = []
     for one in deck.equations:
         one.follow(joined)
@@ -177,7 +177,7 @@ def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
 
 
 def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
-    """Process equations until no further one can be processed; the remaining ones become constraints."""
+    """Process equations until none can be processed any more; the remaining equations become constraints."""
     waiting = [replace(one, terms=[term for term in one.terms if not is_held(deck, *term[:2])])
                for one in deck.equations]
     taken: list[Equation] | None = waiting
@@ -193,7 +193,7 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
 
 
 def _hold_loose(deck: Deck) -> None:
-    """Hold nodes without bars in the directions in which no equation moves them, because they have no stiffness."""
+    """Hold nodes without bars in the directions in which no equation moves them, because stiffness is missing there."""
     ends = carriers(deck)
     for node, ways in deck.equation_directions().items():
         if node in ends:
@@ -210,7 +210,7 @@ def _hold_loose(deck: Deck) -> None:
 
 
 def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
-    """Convert equations of one node to supports along their terms, and drop equations without nodes."""
+    """Convert equations that contain only one node to supports of this node, and drop equations without nodes."""
     found = [one for one in equations if len({term[0] for term in one.terms}) < 2]
     for one in found:
         normal = sum((direction * factor for _, direction, factor in one.terms), start=np.zeros(3))
@@ -220,7 +220,7 @@ def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
 
 
 def _equal(one: Equation) -> tuple[str, str] | None:
-    """Return the nodes of an equation that makes two displacements in one direction equal."""
+    """Return the two nodes of an equation that makes their displacements in one direction equal."""
     if len(one.terms) != 2:
         return None
     (first, along, factor), (second, other, opposite) = one.terms
@@ -230,7 +230,7 @@ def _equal(one: Equation) -> tuple[str, str] | None:
 
 
 def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], bool]) -> list[Equation]:
-    """Merge pairs of nodes whose displacements are equal in all directions that are not held."""
+    """Merge pairs of nodes if equations make their displacements equal in all directions that are not held."""
     pairs: dict[tuple[str, str], list[Equation]] = {}
     for one in equations:
         if pair := _equal(one):
@@ -257,7 +257,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
 
 
 def _followed(deck: Deck, equations: list[Equation]) -> list[Equation]:
-    """Move loads of nodes without bars to the nodes that determine their motion."""
+    """Move the loads of nodes without bars to the nodes that determine their motion by equations."""
     ends = carriers(deck)
     of_node: dict[str, list[Equation]] = {}
     for one in equations:
@@ -306,7 +306,7 @@ class Turning:
         self.places = dict(deck.nodes)
 
     def bends(self, node: str, moment: np.ndarray) -> bool:
-        """Return whether a moment bends a beam.
+        """Return whether a moment on a node bends a beam.
 
         Rods carry only moments about their own axis, and torsion of straight bars does not move their ends. In beams a
         moment causes torsion only if all beams at the node are parallel to it.
@@ -325,7 +325,7 @@ class Turning:
         return False
 
     def take(self, line: int, card: str, node: str, moment: np.ndarray, waiver: str | None = None) -> None:
-        """Omit a moment that moves no node; refuse one that bends a beam."""
+        """Omit a moment that moves no node; refuse a moment that bends a beam."""
         if not np.any(moment):
             self.deck.leave(card, "it is 0", line)
         elif self.bends(node, moment):

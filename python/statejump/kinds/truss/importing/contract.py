@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Classes that declare every card of a deck and every field of a card as used, without influence, or unsupported. The
+"""Tables that declare every card of a deck, and every field of a card, as used, without influence, or unsupported. The
 import refuses cards by these tables, and the documentation is generated from them."""
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BLANK = "-"  # a position that must be empty
 class Field:
     """A field of a card or a parameter of a keyword.
 
-    :param why: reason why it has no influence or is not supported
+    :param why: reason why the field has no influence or is not supported
     """
 
     name: str
@@ -26,12 +26,12 @@ class Field:
 class Card:
     """A card of Nastran or a keyword of CalculiX and Abaqus.
 
-    :param what: the result of a used card, or the reason why it is not used
-    :param fields: in the order of a card; parameters of a keyword have no order
-    :param repeats: number of last fields that repeat
-    :param sets: kind of set by which the case control selects the card
+    :param what: result of a used card, or reason why the card is not used
+    :param fields: fields in the order of the card; those of keywords have no order
+    :param repeats: number of fields at the end of the card that may repeat
+    :param sets: kind of set by which the case control selects it
     :param own: whether its reader locates the fields itself, because their positions depend on values
-    :param bending: whether it needs --beams-as-bars
+    :param bending: whether the card requires the option --beams-as-bars
     """
 
     name: str
@@ -44,7 +44,7 @@ class Card:
     bending: bool = False
 
     def field(self, place: int) -> Field | None:
-        """Return the field at a position after the name; None: the card has none there."""
+        """Return the field at a position after the name of the card; None if the card has no field there."""
         if place < len(self.fields):
             return self.fields[place]
         return self.fields[len(self.fields) - self.repeats + (place - len(self.fields)) % self.repeats] \
@@ -58,12 +58,12 @@ class Card:
 def used(name: str, what: str, layout: str = "", *, idle: Mapping[str, str] | None = None,
          refused: Mapping[str, str] | None = None, repeats: int = 0, sets: str = "", own: bool = False,
          bending: bool = False) -> Card:
-    """Return a card that is used.
+    """Declare a card that the import uses.
 
     :param layout: names of all fields in their order, separated by blanks
-    :param idle: reasons of fields without influence, by names separated by blanks
-    :param refused: reasons of unsupported fields, by names separated by blanks
-    :raises ValueError: a reason names a field that the layout lacks, or one twice
+    :param idle: reasons why fields have no influence, by field names separated by blanks
+    :param refused: reasons why fields are unsupported, by field names separated by blanks
+    :raises ValueError: a reason names a field that the layout lacks, or a field has two reasons
     """
     names = layout.split()
     reasons: dict[str, tuple[str, str]] = {}
@@ -93,7 +93,7 @@ def refused(names: str, why: str, sets: str = "") -> Iterator[Card]:
 
 
 def table(*cards: Card | Iterator[Card]) -> dict[str, Card]:
-    """Return cards by name. :raises ValueError: a card is in two classes"""
+    """Return cards by name. :raises ValueError: a card occurs twice"""
     found: dict[str, Card] = {}
     for item in cards:
         for card in [item] if isinstance(item, Card) else item:
@@ -104,7 +104,7 @@ def table(*cards: Card | Iterator[Card]) -> dict[str, Card]:
 
 
 def markdown(cards: Mapping[str, Card], heading: Sequence[str]) -> list[str]:
-    """Return tables of the documentation: used cards with their fields, then the others by reason."""
+    """Return the tables for the documentation: first used cards with their fields, then the other cards by reason."""
     taken = sorted((card for card in cards.values() if card.use == USED), key=lambda one: one.name)
     fields = any(card.fields for card in taken)
     shown = (USED, IDLE, REFUSED) if fields else ()

@@ -17,8 +17,8 @@ PARALLEL = 1e-6
 class Frame:
     """A coordinate system.
 
-    :param kind: ``R``, ``C`` (radius, angle in degrees, height) or ``S`` (radius, angle from z, angle about z)
-    :param axes: rows are its axes x, y, z in the basic system
+    :param kind: ``R`` (x, y, z), ``C`` (radius, angle [°], height) or ``S`` (radius, angle from z, angle about z)
+    :param axes: matrix whose rows are the axes x, y, z of the system, in the basic system
     """
 
     kind: str
@@ -39,7 +39,7 @@ class Frame:
         return np.array([first, second, third], dtype=float)
 
     def directions(self, at: Sequence[float]) -> np.ndarray:
-        """Return the three directions at a point, as rows in the basic system; on the axis, those of x, y, z."""
+        """Return the three coordinate directions at a point, as rows in the basic system; on the axis x, y, z."""
         if self.kind == "R":
             return self.axes
         x, y, z = self.axes @ (np.asarray(at, dtype=float) - self.origin)
@@ -58,7 +58,7 @@ BASIC = Frame("R", np.zeros(3), np.eye(3))
 
 
 def by_points(kind: str, origin: np.ndarray, on_z: np.ndarray, in_xz: np.ndarray) -> Frame | None:
-    """Return the system of Nastran, from a point on its z axis and one in its xz plane; None: they span no plane."""
+    """Return the system of Nastran from a point on its z axis and one in its xz plane; None: they span no plane."""
     z, across = on_z - origin, in_xz - origin
     length, size = np.linalg.norm(z), np.linalg.norm(across)
     if length == 0 or size == 0:
@@ -73,7 +73,7 @@ def by_points(kind: str, origin: np.ndarray, on_z: np.ndarray, in_xz: np.ndarray
 
 
 def by_axis(kind: str, origin: np.ndarray, on_x: np.ndarray, in_xy: np.ndarray) -> Frame | None:
-    """Return the system of Abaqus, from a point on its x axis and one in its xy plane; None: they span no plane."""
+    """Return the system of Abaqus from a point on its x axis and one in its xy plane; None: they span no plane."""
     found = by_points(kind, origin, on_x, in_xy)
     if found is None:
         return None
@@ -83,9 +83,9 @@ def by_axis(kind: str, origin: np.ndarray, on_x: np.ndarray, in_xy: np.ndarray) 
 
 
 def about_axis(first: np.ndarray, second: np.ndarray) -> Frame | None:
-    """Return the cylindrical system with the axis through two points; None: the points coincide.
+    """Return the cylindrical system whose axis passes through two points; None if the points coincide.
 
-    The zero of its angle is arbitrary, so only its directions are meaningful.
+    The zero of its angle is arbitrary, so the system is used only for directions.
     """
     z = second - first
     aside = np.eye(3)[int(np.argmin(np.abs(z)))]
@@ -93,7 +93,7 @@ def about_axis(first: np.ndarray, second: np.ndarray) -> Frame | None:
 
 
 def rotated(point: np.ndarray, first: np.ndarray, second: np.ndarray, degrees: float) -> np.ndarray:
-    """Return a point rotated about the axis from one point to another."""
+    """Return a point after a rotation about the axis through two other points."""
     axis = (second - first) / np.linalg.norm(second - first)
     way, angle = point - first, radians(degrees)
     return np.asarray(first + way * cos(angle) + np.cross(axis, way) * sin(angle)

@@ -7,7 +7,7 @@
 - ``link`` and ``node``: a revolute between the end of the link, the journal, and the others at the node
 
 ``node`` and ``link`` of sliders may be patterns (``L1*``). ``from`` names a file with the section of such a joint, as
-``statejump identify`` writes it. Keys of ``--joint`` override those of the file.
+``statejump identify`` writes it. Keys of ``--joint`` override the keys of the file.
 """
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ LINK, FROM = "link", "from"
 
 
 def put_in(made: Document, joints: Sequence[Mapping[str, str]], dimension: int) -> list[str]:
-    """Insert joints into the document of a case; return the choices of the import, one sentence each.
+    """Insert joints into the document of a case. Return one sentence for each choice that the import made.
 
     :raises StatejumpError: a node, link, key or file does not exist
     """
@@ -108,7 +108,7 @@ def _one(key: str, name: str, known: Iterable[str]) -> str:
 
 
 def matching(key: str, pattern: str, known: Iterable[str]) -> list[str]:
-    """Return the names that match a pattern; a text that matches none is itself a name."""
+    """Return the names that match a pattern. A text that matches no name must itself be a name."""
     found = [name for name in known if fnmatchcase(name, pattern)]
     return found or [_one(key, pattern, known)]
 
@@ -124,7 +124,7 @@ def _slider(made: Document, node: dict[str, Any], values: dict[str, Any], dimens
 
 def _slider_in_link(made: Document, link: dict[str, Any], nodes: Mapping[str, Any], at: str | None,
                     values: dict[str, Any]) -> None:
-    """Separate the end of a link from its node, and connect both by a slider along the link."""
+    """Separate one end of a link from its node, and connect this end and the node by a slider along the link."""
     ends = link["nodes"]
     name = ends[0] if at is None else _one("node", at, ends)
     other = ends[1] if name == ends[0] else ends[0]
@@ -158,7 +158,7 @@ def _revolute(made: Document, node: dict[str, Any], values: dict[str, Any], dime
 
 
 def _bearing(name: str, bearing: str | None, others: Sequence[str]) -> str:
-    """Return the note on the link that carries the bearing, and on other links that could carry it."""
+    """Return a note on which link carries the bearing of a revolute, and which other links could carry it."""
     if bearing is None:
         return f"revolute {name!r}: no bearing_link, the bearing does not turn" + (
             f"; {', '.join(map(repr, others))} could carry it" if others else "")

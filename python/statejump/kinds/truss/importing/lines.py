@@ -13,13 +13,13 @@ DEEPEST = 10  # depth of included files
 
 
 class Line(int):
-    """A line number; in an included file it also has the name of the file."""
+    """A line number in a deck. If the line is in an included file, it also has the name of the file."""
 
     file: str | None = None
 
     @classmethod
     def of(cls, number: int, file: str | None) -> int:
-        """Return a line number with the name of its file; None: the deck itself."""
+        """Return a line number with the name of its file, if it is in an included file (not None)."""
         if file is None:
             return number
         line = cls(number)
@@ -34,7 +34,7 @@ class Line(int):
 
 
 def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
-    """Return the lines of a file. :raises Unreadable: it does not exist, is too large or no text"""
+    """Return the lines of a text file. :raises Unreadable: the file does not exist, is too large, or is not text"""
     if not is_file(path):
         raise Unreadable(code="file_not_found", file=path)
     try:
@@ -57,7 +57,7 @@ class Source:
     """Reads a deck and its included files, which must be inside its folder.
 
     :param path: the deck
-    :param included: returns the file that a line includes, and the number of lines of that statement; None: no INCLUDE
+    :param included: function that returns the file named at a line, and how many lines name it; None: no INCLUDE
     """
 
     def __init__(self, path: Path, included: Callable[[list[str], int], tuple[str, int] | None]) -> None:

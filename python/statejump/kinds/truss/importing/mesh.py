@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes and bars of a mesh. VTK reads its own formats, meshio the others. Meshes are in SI units and have no sections
-and supports. Properties of bars are cell data named after keys of cases, or options."""
+"""Nodes and bars of a mesh. VTK reads its own formats, the library meshio all others. Meshes are in SI units, without
+sections and supports. Properties of bars are cell data named after case keys, or options."""
 from __future__ import annotations
 
 import contextlib
@@ -32,9 +32,9 @@ DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "t
 
 
 def read(path: Path) -> Deck:
-    """Return the content of a mesh; the names of nodes and bars are their numbers from 1.
+    """Return the content of a mesh. The names of nodes and bars are their numbers, counted from 1.
 
-    :raises StatejumpError: one sentence with the file; or VTK or meshio is missing
+    :raises StatejumpError: VTK or meshio is missing, or the file is faulty: one sentence with its name
     """
     mesh = _read(path)
     deck = Deck(path)
@@ -137,7 +137,7 @@ def _by_meshio(path: Path) -> Any:
 
 
 def _check_hdf5(path: Path) -> None:
-    """Raise Unreadable for a file of HDF5 with parts in other files."""
+    """Raise Unreadable for an HDF5 file that has parts in other files."""
     h5py = libraries.h5py()
 
     with h5py.File(path, "r") as file:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The content of a deck, independent of the program it was written for, and the record of used and omitted cards."""
+"""The content of a deck, whatever program it was written for, and the record of used and omitted cards."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -26,14 +26,14 @@ SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nas
 
 @dataclass
 class Bar:
-    """An element that becomes a link. Numbers are in the units of the deck; None: not in the deck.
+    """An element that becomes a link. Numbers are in the units of the deck; None if the deck does not give them.
 
-    :param expansion_table: temperatures and secant coefficients, if these depend on temperature
-    :param expansion_zero: temperature at which the secants begin
-    :param more_mass: mass per length besides that of the density
-    :param why_no_area: reason why the section in the deck gives no area
+    :param expansion_table: temperatures and secant coefficients of expansion, if these depend on temperature
+    :param expansion_zero: reference temperature of the secant coefficients
+    :param more_mass: mass per length in addition to that of the density
+    :param why_no_area: reason why the deck gives no area for the bar
     :param bends: whether it is a beam whose bending is omitted
-    :param lengthened: its length over the distance of its nodes, which rigid ends along the bar connect to it
+    :param lengthened: ratio of its length to the distance of its nodes, to which rigid ends connect it
     """
 
     name: str
@@ -65,7 +65,7 @@ class RigidBody:
 
 @dataclass
 class Moment:
-    """A moment on a node.
+    """A moment that acts on a node.
 
     :param waiver: argument of ``--ignore`` that omits the moment; None: the name of its card
     """
@@ -79,9 +79,9 @@ class Moment:
 
 @dataclass(eq=False)
 class Equation:
-    """A sum of displacements that is 0.
+    """A sum of displacements that is zero.
 
-    :param terms: node, direction (a unit vector), factor
+    :param terms: node, direction (unit vector) and factor of each term
     """
 
     line: int
@@ -95,9 +95,9 @@ class Equation:
 
 @dataclass
 class Follower:
-    """A node whose motion follows from others.
+    """A node whose motion follows from the motion of other nodes.
 
-    :param equations: equations of its motion; empty: the motion depends on rotations
+    :param equations: equations for its displacement; empty: the displacement depends on rotations
     """
 
     line: int
@@ -110,8 +110,8 @@ class Follower:
 class Spring:
     """A linear spring along the line between two nodes, or between a node and the ground along a direction.
 
-    :param second: the other node; None: the ground
-    :param direction: unit vector, of a spring to the ground
+    :param second: the second node; None: the ground
+    :param direction: unit vector of the spring, if it ends at the ground
     """
 
     name: str
@@ -125,12 +125,12 @@ class Spring:
 
 @dataclass(frozen=True)
 class Options:
-    """The user's choices for cards.
+    """The user's choices for the import of cards.
 
     :param ignored: names of cards and fields that are omitted although they have influence
     :param beams_as_bars: whether beams become pin-jointed bars
     :param step: number of the step or subcase; None: the first one
-    :param circ: meaning of the one length of a CIRC section: ``radius`` or ``diameter``
+    :param circ: meaning of a single length of a CIRC section: ``radius`` or ``diameter``
     """
 
     ignored: frozenset[str] = frozenset()
@@ -141,18 +141,18 @@ class Options:
 
 @dataclass
 class Deck:
-    """A truss in the units of its deck.
+    """A truss in the units of the deck from which it was read.
 
     :param temperature: temperature of nodes, on the scale of the deck
-    :param held: directions in which a node does not move, besides those of ``fixed``
+    :param held: directions in which a node does not move, in addition to the axes in ``fixed``
     :param mass: lumped masses of nodes
-    :param mass_scale: factor of all masses and densities
-    :param gravity: acceleration of all masses
-    :param refused: first line, reason, sentence and count, by card and by the option that waives the refusal
-    :param taken: count by card and result, for used cards
-    :param left: first line and count by card and reason, for omitted cards
-    :param named_units: whether the file names the units of its numbers
-    :param choices: assumptions that the import made without an option of the user, one sentence each
+    :param mass_scale: factor for all masses and densities
+    :param gravity: acceleration vector of all masses
+    :param refused: by refused card and option that waives the refusal: first line, reason, sentence, count
+    :param taken: count by used card and result
+    :param left: first line and count by omitted card and reason
+    :param named_units: whether the file states the units of its numbers
+    :param choices: one sentence for each choice that no option of the user made
     """
 
     path: Path
@@ -191,7 +191,7 @@ class Deck:
         return found
 
     def take(self, card: str, what: str, count: int = 1) -> None:
-        """Record that a part of a card became part of the truss."""
+        """Record that a part of a card was converted to a part of the truss."""
         self.taken[card, what] = self.taken.get((card, what), 0) + count
 
     def leave(self, card: str, why: str, line: int) -> None:
@@ -200,12 +200,12 @@ class Deck:
         self.left[card, why] = (first, count + 1)
 
     def refuse(self, card: str, why: str, line: int, waiver: str | None = None, **values: str) -> None:
-        """Record an unsupported part of a card that has influence; ``--ignore`` omits it.
+        """Record that a part of a card has influence but is not supported. ``--ignore`` omits the part.
 
-        :param why: key of ``REASONS``, or a sentence of the table of cards
-        :param waiver: argument of ``--ignore`` that omits the part; None: the card. An option of its own ends with
-            ``=`` or begins with ``--``
-        :param values: numbers and names in the sentence of the reason
+        :param why: key of ``REASONS``, or a sentence from the table of cards
+        :param waiver: argument of ``--ignore`` that omits the part; None: the name of the card. The name of another
+            option ends with ``=`` or begins with ``--``
+        :param values: numbers and names for the sentence
         """
         reason, why = (why, REASONS[why].format_map(values)) if why in REASONS else (TABLE_REASON, why)
         waiver = waiver or card
@@ -217,7 +217,7 @@ class Deck:
         self.refused[card, waiver] = (first, said[0], said[1], count + 1)
 
     def settle(self) -> None:
-        """Raise an error for unsupported cards. :raises StatejumpError: one sentence with card, line and option"""
+        """Raise an error if unsupported cards were recorded. :raises StatejumpError: card, line and option"""
         if not self.refused:
             return
         # Bending first, because the user must decide on it before other cards matter.
@@ -235,15 +235,15 @@ class Deck:
             if waiver.startswith("--") else f"--ignore {_argument(waiver)} leaves it out")
 
     def check_waived(self) -> None:
-        """Raise an error for an ``--ignore`` that matches nothing in the deck. :raises NotAllowed: there is one"""
+        """Raise an error for an argument of ``--ignore`` that matches nothing. :raises NotAllowed: there is one"""
         for name in sorted(self.options.ignored - self.waived):
             raise NotAllowed("--ignore", name, code="nothing_to_ignore")
 
     def fail(self, line: int, code: str, card: str = "", **details: Any) -> Unreadable:
-        """Return the error for an unreadable deck.
+        """Return the error for a deck that cannot be read.
 
-        :param line: 0 if unknown
-        :param code: of ``CODES``, which names the details
+        :param line: line number; 0 if unknown
+        :param code: key of ``CODES``, which determines the names of details
         :param card: the card or keyword
         """
         where = [f"line {line}"] if line else []
@@ -298,7 +298,7 @@ class Deck:
         return shown
 
     def left_rows(self) -> list[tuple[str, str, str, str]]:
-        """Return the rows of omitted cards, in the order of the deck."""
+        """Return the table rows for omitted cards, in the order of the deck."""
         return [(card, str(count), str(line) if line else "", why)
                 for (card, why), (line, count) in sorted(self.left.items(), key=lambda item: item[1])]
 

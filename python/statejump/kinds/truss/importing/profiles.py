@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Areas of cross-sections from their dimensions, with the names of the manuals of Nastran and CalculiX."""
+"""Areas of cross-sections from their dimensions. Names of shapes are those in the manuals of Nastran and CalculiX."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -45,9 +45,9 @@ def nastran(shape: str, sizes: Sequence[float]) -> float | None:
 
 def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
     """Return the area of the uniform bar with the axial stiffness of a bar whose area is linear between stations, and
-    the mean area.
+    the mean area of that bar.
 
-    :param stations: pairs of fraction of the length, increasing from 0 to 1, and area
+    :param stations: pairs of fraction of the length, rising from 0 to 1, and area
     """
     flexibility = mean = 0.0
     for (start, first), (end, second) in zip(stations, stations[1:]):
@@ -58,10 +58,10 @@ def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
 
 
 def between(shape: str, first: tuple[float, float], last: tuple[float, float]) -> tuple[float, float] | None:
-    """Return the area of the uniform bar with the axial stiffness of a bar whose two sizes are linear between its ends,
-    and the mean area; None: the shape does not have two sizes.
+    """Return the area of the uniform bar with the axial stiffness of a tapered bar, whose two sizes are linear between
+    its ends, and its mean area; None if the shape does not have two sizes.
 
-    :param shape: ``RECT`` or ``CIRC``, each with one size per axis
+    :param shape: ``RECT`` or ``CIRC``, each with two sizes
     """
     if shape not in ("RECT", "CIRC") or min(*first, *last) <= 0:
         return None
@@ -76,8 +76,7 @@ def between(shape: str, first: tuple[float, float], last: tuple[float, float]) -
 def calculix(shape: str, sizes: Sequence[float]) -> float | None:
     """Return the area of ``*SOLID SECTION`` (``AREA``) or of a shape of ``*BEAM SECTION``; None: it has no area.
 
-    CIRC has the lengths of its two axes in CalculiX; a single length is the diameter here. RECT with one length is a
-    square.
+    In CalculiX, CIRC has the lengths of two axes; a single length is the diameter. RECT with one length is square.
     """
     found: float | None = None
     match shape, [*sizes]:

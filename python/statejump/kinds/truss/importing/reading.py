@@ -21,8 +21,8 @@ CASE_CONTROL = re.compile(r"^[ \t]*(CEND|BEGIN[ \t]+BULK)\b", re.IGNORECASE | re
 
 
 def form_of(path: Path) -> str | None:
-    """Return the format of a file by its suffix, of a deck also by its content: decks of Nastran end with .inp too,
-    and decks of CalculiX with .dat."""
+    """Return the format of a file by its suffix, for a deck also by its content. Some Nastran decks end with .inp, and
+    some decks of CalculiX with .dat."""
     form = SUFFIXES.get(path.suffix.lower())
     if form not in ("abaqus", "nastran") or not is_file(path):
         return form
@@ -40,8 +40,8 @@ def form_of(path: Path) -> str | None:
 def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
     """Return the content of a deck.
 
-    :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: :func:`form_of`
-    :param bars: the second table of ``tables``
+    :param form: ``abaqus`` (also CalculiX), ``nastran``, ``tables`` or ``mesh``; None: see :func:`form_of`
+    :param bars: path of the second table of the format ``tables``
     :param options: choices for cards of ``abaqus`` and ``nastran``
     :raises StatejumpError: one sentence with file and line
     """
@@ -65,12 +65,12 @@ def read(path: Path, form: str | None = None, bars: Path | None = None, options:
 
 
 def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made, str | None]:
-    """Return the case of a document, and a hint if parts of the truss have no support.
+    """Return the case of a document, and a hint if some parts of the truss have no support.
 
-    All other checks run with one node of each unsupported part held.
+    For all other checks, one node of each unsupported part is held.
 
-    :param parse: returns the case of a document
-    :raises StatejumpError: another check fails
+    :param parse: function that returns the case of a document
+    :raises StatejumpError: one of the other checks fails
     """
     try:
         return parse(document), None

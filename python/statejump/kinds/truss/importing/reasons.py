@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reasons why the import refuses a card: key of the reason for ``deck_not_supported``, and its sentence."""
+"""Reasons why the import refuses a card, for the error ``deck_not_supported``: key and sentence of each reason."""
 from __future__ import annotations
 
 # Key for reasons whose sentence is in the table of cards.

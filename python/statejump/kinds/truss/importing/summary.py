@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Quantities for a check after an import: sizes and ranges in SI units, and hints if they are implausible."""
+"""Quantities to check after an import: sizes and ranges in SI units, with hints if they are implausible."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -48,7 +48,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
 
 
 def hints(made: Mapping[str, Any]) -> list[str]:
-    """Return hints that the units of a deck are implausible, one sentence each."""
+    """Return hints that the units of a deck may be wrong, one sentence each."""
     positions = _positions(made)
     links = made["link"]
     lengths = [_length(link, positions) for link in links]
@@ -71,7 +71,7 @@ def hints(made: Mapping[str, Any]) -> list[str]:
 
 
 def _positions(made: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Return the positions of nodes of the deck, without the far ends of springs to the ground."""
+    """Return the positions of the deck's own nodes, without the far ends of springs to the ground."""
     ground = {spring["nodes"][1] for spring in made.get("spring", ()) if spring["nodes"][1].startswith("G_")}
     return {node["name"]: np.array(node["position_m"]) for node in made["node"] if node["name"] not in ground}
 

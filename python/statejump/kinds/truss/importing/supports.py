@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Held directions in the form of a case: along axes, and one in any direction."""
+"""Supports of a node in the form of a case: held axes, and one held direction of any orientation."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ ALONG = 1e-4
 
 
 def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
-    """Return ``fixed`` and ``guide_normal`` of a node. :raises Unreadable: a case cannot represent the support"""
+    """Return ``fixed`` and ``guide_normal`` of a node. :raises Unreadable: a case cannot represent its support"""
     if node not in deck.held:
         fixed = [axis for axis in "xyz"[:dimension] if axis in deck.fixed.get(node, ())]
         return {"fixed": fixed} if fixed else {}
@@ -42,7 +42,7 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
 
 
 def held_directions(deck: Deck, node: str) -> np.ndarray:
-    """Return the directions in which a node is held, as rows that may be linearly dependent."""
+    """Return the directions in which a node is held, as rows. The rows may be linearly dependent."""
     axes = np.eye(3)
     rows = [axes["xyz".index(axis)] for axis in sorted(deck.fixed.get(node, ()))]
     return np.array(rows + [np.array(direction) for direction in deck.held.get(node, ())]).reshape(-1, 3)
@@ -104,7 +104,7 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
 
 
 def _across(deck: Deck, ends: Sequence[tuple[str, np.ndarray]]) -> bool:
-    """Return whether a spring between two nodes acts across the line between them."""
+    """Return whether a spring between two nodes acts across the line between the nodes."""
     (first, direction), (second, other) = ends
     way = np.subtract(deck.nodes[second], deck.nodes[first])
     length = np.linalg.norm(way)

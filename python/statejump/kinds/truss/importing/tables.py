@@ -22,7 +22,7 @@ Cell = Union[str, float]
 
 
 def read(nodes: Path, bars: Path) -> Deck:
-    """Return the content of two tables, in SI units.
+    """Return the truss described by two tables, in SI units.
 
     :raises Unreadable: one sentence with file and line
     """
@@ -52,7 +52,7 @@ def read(nodes: Path, bars: Path) -> Deck:
 
 
 def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) -> list[tuple[int, dict[str, Cell]]]:
-    """Return the rows of a table with their line numbers, by column, in SI units."""
+    """Return the rows of a table in SI units, each as its line number and its cells by column."""
     deck.path = path
     if not is_file(path):
         raise Unreadable(code="file_not_found", file=path)
@@ -74,7 +74,7 @@ def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) ->
 
 
 def _optional(row: dict[str, Cell], key: str) -> float | None:
-    """Return the number of a cell that may be empty or missing."""
+    """Return the number in a cell that may be empty or missing."""
     value = row.get(key)
     return value if isinstance(value, float) and value == value else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Conversion of a deck to a case document: units, dimension, temperatures, and inserted joints."""
+"""Conversion of a deck to a case document: units, number of dimensions, temperatures, inserted joints."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -39,9 +39,9 @@ JUMP = 1e-3
 class Units:
     """The units of a deck.
 
-    :param length_m: one unit of length of the deck [m]
-    :param force_N: one unit of force [N]
-    :param mass_kg: one unit of mass [kg]; None: force · s² / length
+    :param length_m: unit of length of the deck [m]
+    :param force_N: unit of force of the deck [N]
+    :param mass_kg: unit of mass of the deck [kg]; None: force · s² / length
     """
 
     length_m: float = 1.0
@@ -75,16 +75,16 @@ def case_document(
     reflector: tuple[Sequence[str], Sequence[float]] | None = None, links: Mapping[str, float] | None = None,
     fixed: Sequence[tuple[str, str]] = (), check_ignored: bool = True,
 ) -> Document:
-    """Return the case document of a deck, and record in the deck the use of its cards.
+    """Return the case document of a deck, and record in the deck how each card was used.
 
     :param units: units of the deck
     :param temperature_change_K: temperature change of all links, for a deck without temperatures
-    :param density_kg_per_m3: density of links that have none in the deck
+    :param density_kg_per_m3: density of the links for which the deck gives none
     :param joints: arguments of ``--joint``, see :mod:`~statejump.kinds.truss.importing.joints`
     :param sections: further sections of the case; ``thermal`` replaces the temperatures of the deck
-    :param reflector: nodes of a reflecting surface, names or patterns, and its axis
-    :param links: values of link keys that are missing in the deck
-    :param fixed: names or patterns of nodes, and further directions in which they are held
+    :param reflector: nodes of a reflecting surface, as names or patterns, and the axis of the surface
+    :param links: values of link keys for which the deck gives none
+    :param fixed: names or patterns of nodes, and the directions in which they are held in addition
     :param check_ignored: whether to raise an error for an item of ``Options.ignored`` that matches nothing in the deck
     :raises StatejumpError: a link lacks a number, or a node does not exist
     """
@@ -136,7 +136,7 @@ def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> N
 
 
 def _check_unused(deck: Deck, used: set[str]) -> None:
-    """Refuse loads on a node without bars and springs; record its other items as omitted."""
+    """Refuse a load on a node without bars and springs; record that other items on such a node are omitted."""
     acting = [(deck.force_line[node], node, "force") for node, force in deck.force.items()
               if node in deck.force_line and any(force)]
     acting += [(deck.mass_line[node], node, "mass") for node, mass in deck.mass.items() if mass]
@@ -159,7 +159,7 @@ def _dimension(deck: Deck, used: set[str]) -> int:
 
 
 def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
-    """Add springs. A spring to the ground ends at a far node, so that it acts in its direction only."""
+    """Add springs to the document. A spring to the ground ends at a far node, so that its direction stays constant."""
     places = np.array([node["position_m"] for node in made["node"]])
     size = float(np.ptp(places, axis=0).max()) or 1.0
     for spring in deck.springs:
@@ -175,7 +175,7 @@ def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
 
 
 def _constraint(name: str, equation: Equation) -> dict[str, Any]:
-    """Return the constraint of an equation, without coefficients that come from the rounding of directions."""
+    """Return the constraint for an equation, without the small coefficients that rounding of directions causes."""
     sums: dict[tuple[str, str], float] = {}
     for node, way, factor in equation.terms:
         for axis, part in zip("xyz", way):
@@ -203,8 +203,8 @@ def _expansions(deck: Deck, made: Document) -> None:
 def _leave_impossible(deck: Deck, made: Document, *, heated: bool, weighed: bool) -> None:
     """Omit numbers that are out of range and have no influence.
 
-    These are expansion coefficients of an unheated truss, and densities without gravity. Some decks have 1 for both,
-    others a weight instead of a mass.
+    Such numbers are expansion coefficients of an unheated truss, and densities without gravity. Some decks give 1 for
+    both, others a weight instead of a mass.
     """
     for bar, link in zip(deck.bars, made["link"]):
         expansion, density = link.get("thermal_expansion_per_K", 0.0), link.get("density_kg_per_m3", 0.0)
@@ -231,7 +231,7 @@ def _ground(deck: Deck, spring: Spring, name: str, units: Units, length: float, 
 
 
 def node_name(name: str) -> str:
-    """Return the name in the case of a node of a deck: N and its number, or the name of its instance and its number."""
+    """Return the name in the case of a node of a deck: N and its number, or name of its instance and number."""
     return _called("N", name)
 
 
@@ -310,16 +310,16 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
 
 
 def in_units(value: float, unit: float) -> float:
-    """Return a number of a deck in the units of cases, rounded to the digits of a deck: 50 mm2 is 5e-05 m2."""
+    """Convert a number of a deck to the units of cases, rounded to the digits in the deck: 50 mm2 is 5e-05 m2."""
     return value if unit == 1 else float(f"{value * unit:.15g}")
 
 
 def item(name: str, table: Sequence[tuple[float, float]], zero: float, start: float) -> dict[str, Any]:
-    """Return the ``[[expansion]]`` of a table.
+    """Return the ``[[expansion]]`` for a table of coefficients.
 
-    :param table: increasing temperatures with secant coefficients
-    :param zero: temperature at which the secants begin
-    :param start: stress-free temperature
+    :param table: rising temperatures with secant coefficients
+    :param zero: reference temperature of the secant coefficients
+    :param start: stress-free temperature of the bar
     """
     temperatures, secants = (np.array(column) for column in zip(*table))
     width = JUMP * max(float(np.ptp(temperatures)), 1.0)

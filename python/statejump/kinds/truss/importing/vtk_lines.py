@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Program that reads the lines of a file with VTK: ``python vtk_lines.py FILE`` writes arrays to standard output.
 
-It is a separate process, because some damaged files crash the process that reads them. It imports nothing of the
-package.
+The program runs as a separate process, because some damaged files crash the process that reads them. It imports nothing
+of the package.
 """
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ def grid_of(path: str) -> Any:
 
 
 def arrays_of(grid: Any) -> dict[str, np.ndarray]:
-    """Return points, names of data and, for each block of cells of one type, its name, the line ends and the line
-    positions."""
+    """Return points, names of data and, for each block of cells of one type, its name and the ends and the positions of
+    lines."""
     types = vtk_to_numpy(grid.GetCellTypesArray()) if grid.GetNumberOfCells() else np.zeros(0, dtype=np.uint8)
     cells = grid.GetCells()
     offsets, nodes = (vtk_to_numpy(part) for part in (cells.GetOffsetsArray(), cells.GetConnectivityArray()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registry of joint types, one file per type. :mod:`.protocol` documents a type."""
+"""The registry of joint types, one file per type. :mod:`.protocol` documents joint types."""
 from __future__ import annotations
 
 from typing import Any, ClassVar

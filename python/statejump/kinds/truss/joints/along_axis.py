@@ -32,7 +32,7 @@ class Axes(Protocol):
 
     @property
     def nodes(self) -> np.ndarray:
-        """(s, 2) int; the second is GROUND, or a node that the joint couples to the first across the axis."""
+        """Indices of nodes (s, 2); the second is GROUND, or a node that the joint couples to the first."""
 
     @property
     def axis(self) -> np.ndarray:
@@ -44,7 +44,7 @@ ArraysType = TypeVar("ArraysType", bound=Axes)
 
 
 class AlongAxis(JointType[ItemType, ArraysType]):
-    """A joint type along an axis. Across it the joint couples two nodes; on ground, the supports hold the node."""
+    """A joint type along an axis. Across the axis, the joint couples two nodes; on ground, supports hold its node."""
 
     noun: ClassVar[str]  # in sentences
 
@@ -85,7 +85,7 @@ class AlongAxis(JointType[ItemType, ArraysType]):
         return joints.nodes[:, 0]
 
     def places(self, truss: ResolvedTruss, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
-        """Return the positions (s, 3) of its symbols, and the upward direction of each in the drawing plane (s, 3)."""
+        """Return the positions (s, 3) of the joint symbols, and their upward directions in the drawing plane (s, 3)."""
         along = joints.axis
         return (truss.nodes.position_m[joints.nodes[:, 0]],
                 np.stack((-along[:, 1], along[:, 0], np.zeros(len(along))), axis=1))
@@ -97,8 +97,7 @@ class AlongAxis(JointType[ItemType, ArraysType]):
             loads.push(index, second, friction * axis)
 
     def friction_N(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the friction on the first node [N] (joints,), positive against the axis, in one state of the
-        solver."""
+        """Return the friction force on the first node [N] (joints,) in one state, positive against the axis."""
         raise NotImplementedError
 
     def covered_nodes(self, joints: ArraysType) -> np.ndarray:

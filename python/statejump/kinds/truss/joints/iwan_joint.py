@@ -49,7 +49,7 @@ class IwanJoint(Item):
 
 @dataclass(frozen=True)
 class IwanJoints:
-    """Iwan joints; the slide is axis · (displacement of the first node - displacement of the second)."""
+    """Iwan joints. Their slide is axis · (displacement of the first node - displacement of the second node)."""
 
     names: Sequence[str]
     nodes: np.ndarray  # (j, 2) int; the second is GROUND, or a node that the joint couples to the first across the axis

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Latch hinges: free play in rotation, stiffness beyond it, friction and a preload moment."""
+"""Latch hinges: rotation with free play, with a stiffness beyond the play, friction and a preload moment."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence

@@ -3,7 +3,7 @@
 
 Case, checks, arrays, solver, result, drawing, texts, sensitivities, DEM and motion use only the registry
 (:data:`statejump.kinds.truss.joints.JOINTS`). A type defines only the methods that it supports. If a model does not
-support the type, a method returns the reason.
+support a type, a method of the type returns the reason.
 """
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ ALUMINIUM = "choice, the paper is silent: aluminium"
 
 @dataclass(frozen=True)
 class ItemColumn:
-    """A column with one value per joint or element of a type, named as in the engine's output."""
+    """A column with one value per joint or element of a type. Its name is that in the engine's output."""
 
     name: str  # with its unit
     note: str = ""
@@ -43,7 +43,7 @@ class ItemColumn:
 
 @dataclass(frozen=True)
 class Symbol:
-    """Symbols of a drawing, planar or spatial, at positions (k, 3). Sizes are in units of the drawing's symbol size."""
+    """Symbols in a drawing, planar or spatial, at positions (k, 3). Sizes are relative to the drawing's symbol size."""
 
     places: np.ndarray
     marker: str | Strokes
@@ -69,7 +69,7 @@ class Sampled:
 
 @dataclass(frozen=True)
 class Contacts:
-    """Contacts over the samples of a run; forces are those on the first part."""
+    """Contacts over the samples of a run. Forces are those on the first part of a contact."""
 
     gap_m: np.ndarray  # (samples, joints)
     point_m: np.ndarray  # (samples, joints, 3)
@@ -88,7 +88,7 @@ class Drawn:
 
 @dataclass(frozen=True)
 class ContactPart:
-    """Nodes with a contact part in the DEM. A node has one part; equal parts of several joints are shared."""
+    """Nodes that carry a contact part in the DEM. A node carries one part; joints share equal parts."""
 
     nodes: np.ndarray  # (k,) GROUND: the joint needs no part at a node
     roles: list[tuple[Any, ...]]  # (k,) shape and material of the part
@@ -97,7 +97,7 @@ class ContactPart:
 
 @dataclass(frozen=True)
 class Torsion:
-    """Torsional stiffnesses between two links, or a link and the ground, by the law of the DEM's torsion springs."""
+    """Torsional stiffnesses between two links, or a link and the ground, in the form of the DEM's torsion springs."""
 
     names: Sequence[str]
     links: np.ndarray  # (k, 2) int; (link, GROUND)
@@ -106,8 +106,7 @@ class Torsion:
 
 
 class PartType(Generic[ItemType, ArraysType]):
-    """Common part of the types of joints and elements. ``section`` is its list in a case file and its name in
-    messages."""
+    """Base of joint types and element types. ``section`` is the name of a type's list in cases and messages."""
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
@@ -118,7 +117,7 @@ class PartType(Generic[ItemType, ArraysType]):
 
     @property
     def items(self) -> str:
-        """Name of its list of items in results, and of the table of elements in the engine."""
+        """Name of the list of items of this type in results, and of its table of elements in the engine."""
         return f"{self.section}s"
 
     def where(self, name: str) -> dict[str, Any]:
@@ -131,18 +130,18 @@ class PartType(Generic[ItemType, ArraysType]):
         return found
 
     def check_vectors(self, item: ItemType, dimension: int) -> None:
-        """Raise NotAllowed for a vector whose length differs from the dimension of the truss."""
+        """Raise NotAllowed for a vector whose length is not the dimension of the truss."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        """Raise an error for a reference to a missing or unsuitable node or link."""
+        """Raise an error if an item refers to a missing or unsuitable node or link."""
         raise NotImplementedError
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_vectors` has to check; must include all invalid ones."""
+        """Return the items (n,) that :meth:`check_vectors` must check. The result must include all invalid items."""
         return np.full(len(items), False)
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_references` has to check; must include all invalid ones."""
+        """Return the items (n,) that :meth:`check_references` must check. The result must include all invalid items."""
         raise NotImplementedError
 
     def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
@@ -151,7 +150,7 @@ class PartType(Generic[ItemType, ArraysType]):
         return made
 
     def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
-        """Return the arrays that are not simply the values of a key."""
+        """Return those arrays of the type that are not simply the values of a key."""
         return {}
 
     def torsion(self, arrays: ArraysType) -> Torsion:
@@ -159,7 +158,7 @@ class PartType(Generic[ItemType, ArraysType]):
         return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
 
     def symbols(self, truss: ResolvedTruss, arrays: ArraysType) -> list[Symbol]:
-        """Return the symbols of the type, first the one for the legend; empty for a type that is drawn as lines."""
+        """Return the symbols of the type, first that for the legend; empty for a type that is drawn as lines."""
         return []
 
     def legend(self, arrays: ArraysType) -> str:
@@ -174,7 +173,7 @@ class Rotating(Protocol):
 
 
 class AboutAxis(PartType[ItemType, ArraysType]):
-    """A type whose items rotate about an ``axis``, which planar trusses do not give."""
+    """A type whose items rotate about an ``axis``. In planar trusses, cases do not give the axis."""
 
     def check_vectors(self, item: ItemType, dimension: int) -> None:
         axis_of_rotation(cast(Rotating, item).axis, dimension, self.where(item.name))
@@ -190,7 +189,7 @@ class Linked(Protocol):
 
 
 class BetweenLinks(AboutAxis[ItemType, ArraysType]):
-    """A type that acts on the angle between two ``links``, or on that of one."""
+    """A type that acts on the angle between two ``links``, or on the angle of one link."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         known_links(cast(Linked, item).links, links, self.where(item.name))
@@ -200,7 +199,7 @@ class BetweenLinks(AboutAxis[ItemType, ArraysType]):
 
 
 class JointType(PartType[ItemType, ArraysType]):
-    """A joint type. ``section`` is its list in a case file, its kind in the engine and its name in messages."""
+    """A joint type. ``section`` is the name of its list in a case file, of its kind in the engine, and in messages."""
 
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
@@ -208,7 +207,7 @@ class JointType(PartType[ItemType, ArraysType]):
 
     @property
     def state_column(self) -> str:
-        """Name of the column of its states in the samples of the DEM; the statuses of the solver differ."""
+        """Name of the column of DEM samples with the states of its joints, which differ from the solver's statuses."""
         return f"{self.section}_state"
 
     def where(self, name: str) -> dict[str, Any]:
@@ -222,7 +221,7 @@ class JointType(PartType[ItemType, ArraysType]):
         return False
 
     def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
-        """Raise an error for invalid positions, directions and clearances.
+        """Raise an error if positions, directions or clearances are invalid.
 
         :param ranges_K: smallest and largest ΔT of every program (programs, 2)
         """
@@ -234,11 +233,11 @@ class JointType(PartType[ItemType, ArraysType]):
     # ---------------------------------------------------------------- solver
 
     def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
-        """Return the arrays for the engine that have no field of the same name."""
+        """Return those arrays for the engine for which the dataclass of the type has no field."""
         return {}
 
     def path_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and error code of a joint without a quasi-static path, which needs ``motion.start = "drawn"``."""
+        """Return name and error code of a joint without a quasi-static path; it needs ``motion.start = "drawn"``."""
         return None
 
     # ---------------------------------------------------------------- result
@@ -248,9 +247,9 @@ class JointType(PartType[ItemType, ArraysType]):
         raise NotImplementedError
 
     def drawn(self, truss: ResolvedTruss, joints: ArraysType, labels: Sequence[str], taken: set[str]) -> Drawn:
-        """Return the parts of the page's drawing.
+        """Return the parts that draw the joints on the page.
 
-        :param labels: names of its contacts
+        :param labels: names of the contacts of the type
         :param taken: names of existing parts; the method adds its own
         """
         return Drawn([], [], np.zeros(0))
@@ -270,7 +269,7 @@ class JointType(PartType[ItemType, ArraysType]):
         return np.zeros(0, dtype=int)
 
     def sides(self, joints: ArraysType) -> Iterable[tuple[int, np.ndarray]]:
-        """Yield nodes of planar trusses with the upward direction (2,) of their symbol; names are written below it."""
+        """Yield nodes of planar trusses with the upward direction (2,) of their symbol; names go below it."""
         return ()
 
     def describe(self, items: Sequence[ItemType]) -> str:
@@ -280,7 +279,7 @@ class JointType(PartType[ItemType, ArraysType]):
     # ---------------------------------------------------------------- answers
 
     def parameters(self, joints: ArraysType) -> list[tuple[str, np.ndarray]]:
-        """Return keys and values (joints,) of parameters that may affect a jump; 0 or infinity: a joint has none."""
+        """Return keys and values (joints,) of parameters that may affect a jump; 0 or infinity if a joint has none."""
         return [(key, getattr(joints, key)) for key in self.varied]
 
     def add_friction(self, loads: Loads, joints: ArraysType, state: Mapping[str, np.ndarray]) -> None:
@@ -288,7 +287,7 @@ class JointType(PartType[ItemType, ArraysType]):
         raise NotImplementedError
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
-        """Return the truss with frictionless joints of this type, at the temperature of the reference configuration."""
+        """Return the truss with frictionless joints of this type, at the reference temperature."""
         raise NotImplementedError
 
     def unknown_friction(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> Iterable[int]:
@@ -296,14 +295,14 @@ class JointType(PartType[ItemType, ArraysType]):
         return ()
 
     def carried_friction(self, joints: ArraysType, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Return absolute friction and friction limit (joints,) [N], or [N m] for a rotating type, from its columns at
-        one sample of any model. If a stop and friction share a force, friction carries as much as its limit allows."""
+        """Return friction force and friction limit (joints,) [N], or [N m] for a rotating type, without sign, at one
+        sample of a model. If a stop and friction share a force, friction carries as much as its limit allows."""
         raise NotImplementedError
 
     # ---------------------------------------------------------------- DEM
 
     def dem_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and reason for a joint that the DEM does not support, although it supports the type."""
+        """Return name and reason for one joint that the DEM cannot represent; None if there is none."""
         return None
 
     def regularised_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
@@ -315,19 +314,19 @@ class JointType(PartType[ItemType, ArraysType]):
         return []
 
     def contact_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes (joints, k) whose bodies touch or carry touching parts; first the one at the contact."""
+        """Return the nodes (joints, k) whose bodies touch or carry touching parts. The node at the contact is first."""
         return np.zeros((0, 1), dtype=int)
 
     def pushed_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes (joints, k), or GROUND, on which a contact acts and whose masses it accelerates."""
+        """Return the nodes (joints, k), or GROUND, on which a contact acts and whose masses it thus accelerates."""
         return self.contact_nodes(joints)
 
     def bodies_touch(self, joints: ArraysType) -> np.ndarray:
-        """Return for each joint whether its bodies touch in the DEM. Otherwise an engine computes its forces."""
+        """Return for each joint whether its bodies touch in the DEM. If not, an engine of YADE computes its forces."""
         return np.full(len(self.contact_nodes(joints)), True)
 
     def reach_m(self, path: Course, joints: ArraysType) -> np.ndarray:
-        """Return the largest distance [m] (joints,) of the bodies of a contact from its position."""
+        """Return the largest distance [m] (joints,) of a contact's bodies from the position of the contact."""
         return np.zeros(0)
 
     def contact_stiffness(self, path: Course, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
@@ -336,17 +335,17 @@ class JointType(PartType[ItemType, ArraysType]):
         return np.zeros((0, 1), dtype=int), np.zeros(0)
 
     def gives_in_dem(self, path: Course, joints: ArraysType, told_m: float) -> list[str]:
-        """Return sentences about joints that are rigid in the reduced model and in the DEM deform by more than
-        ``told_m`` [m]."""
+        """Return sentences about joints that are rigid in the reduced model, but deform by more than ``told_m`` [m] in
+        the DEM."""
         return []
 
     def largest_turn_rad(self, path: Course, joints: ArraysType) -> np.ndarray:
-        """Return the largest rotation [rad] (joints,) on the path from the reference configuration, see
+        """Return the largest rotation [rad] (joints,) on the path since its reference, see :meth:`torsion`.
         :meth:`torsion`."""
         return np.zeros(0)
 
     def scene(self, path: Course, joints: ArraysType) -> dict[str, Any]:
-        """Return data for the YADE script that are not in the arrays."""
+        """Return the data for the YADE script that the arrays of the type lack."""
         return {}
 
 
@@ -356,24 +355,24 @@ def count(items: Sequence[object], one: str) -> str:
 
 
 def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
-    """Return the common value of many items or, if they differ, their range."""
+    """Return as text the common value of several items or, if they differ, their range."""
     known = [float(value) for value in values]
     low, high = min(known), max(known)
     return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
 
 
 def scaled(values: np.ndarray, scale: float, unit: str) -> str:
-    """Return the common value or the range of several values times ``scale``, in a readable unit."""
+    """Return as text the common value of several items, or their range, multiplied by ``scale``, in a readable unit."""
     low, high = values.min() * scale, values.max() * scale
     return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"
 
 
 @dataclass(frozen=True)
 class Loads:
-    """Nodal forces of all joints, joint by joint.
+    """Nodal forces that the joints cause, joint by joint.
 
-    :param force_N: (joints, nodes, 3), incremented by the methods
-    :param place_m: (nodes, 3), positions of nodes in the state
+    :param force_N: forces (joints, nodes, 3), which the methods increment
+    :param place_m: positions of the nodes in the state (nodes, 3)
     """
 
     truss: ResolvedTruss
@@ -397,10 +396,10 @@ class Loads:
 
     def rub(self, joint: int, nodes: tuple[int, int], links: tuple[int, int], friction_N: np.ndarray,
             offset_m: np.ndarray, arm_m: float) -> None:
-        """Add the friction between a round part and a hollow one, with the moments on both about their nodes.
+        """Add the friction between a round part and a hollow one, with the moments of both about their nodes.
 
-        :param nodes: nodes of the hollow part and of the round one; ``links`` likewise
-        :param friction_N: friction on the round part
+        :param nodes: node of the hollow part, then of the round part; ``links`` likewise
+        :param friction_N: friction force on the round part
         :param offset_m: vector from the centre of the hollow part to that of the round one
         :param arm_m: distance from the centre of the round part to the contact point
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints with clearance: a round part at one node in a bore at another node, with Coulomb friction."""
+"""Joints with clearance and Coulomb friction: a round part at one node moves in a bore at another node."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -42,7 +42,7 @@ ArraysType = TypeVar("ArraysType", bound=RoundArrays)
 
 
 class RoundParts(JointType[ItemType, ArraysType]):
-    """A joint of a round part in a bore. Keys and arrays of each part begin with its name: ``journal_node``, ..."""
+    """A joint of a round part in a bore. Keys and arrays of a part begin with the part's name: ``journal_node``, ..."""
 
     noun: ClassVar[str]  # in sentences
     inner: ClassVar[str]  # name of the inner part
@@ -56,7 +56,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
 
     @property
     def parts(self) -> tuple[str, str]:
-        """Names of both parts, first the one at the position of the contact."""
+        """Names of both parts. The part at the position of the contact is first."""
         return self.outer, self.inner
 
     def _nodes(self, joints: ArraysType) -> np.ndarray:
@@ -67,8 +67,9 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return found if part == self.inner else found + joints.radial_clearance_m
 
     def hertz_stiffness(self, joints: Any) -> np.ndarray:
-        """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts have one material and touch like a sphere of
-        radius R = R1 R2/(R2 - R1) on a plane, as in the DEM. The formulas are independent of the DEM's contact law."""
+        """Return K of the Hertz law F = K δ^1.5 [N/m^1.5] of every joint. Both parts have one material and touch like a
+        sphere of radius R = R1 R2/(R2 - R1) on a plane, as in the DEM. The formulas do not use the DEM's contact
+        law."""
         inner, outer = (self.radius_m(joints, part) for part in (self.inner, self.outer))
         radius = physics.conforming_radius_m(inner, outer, joints.radial_clearance_m)
         modulus = physics.effective_young_modulus_Pa(joints.young_modulus_Pa, joints.poisson_ratio)
@@ -79,7 +80,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return 1.5 * self.hertz_stiffness(joints) * physics.shear_over_normal_stiffness(joints.poisson_ratio)
 
     def clearance_m(self, joints: Any, temperature_change_K: Any) -> np.ndarray:
-        """Return the radial clearance [m] of the joints at ΔT [K], already multiplied by the temperature fraction."""
+        """Return the radial clearance [m] of the joints at ΔT [K], which includes their temperature fraction."""
         grown = [getattr(joints, f"{part}_thermal_expansion_per_K") * self.radius_m(joints, part)
                  for part in self.parts]
         found: np.ndarray = joints.radial_clearance_m + temperature_change_K * (grown[0] - grown[1])
@@ -137,7 +138,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return any(getattr(item, f"{part}_thermal_expansion_per_K") for part in self.parts)
 
     def check_parts(self, truss: ResolvedTruss, joints: Any, ranges_K: np.ndarray, apart_m: np.ndarray) -> None:
-        """Raise NotAllowed for parts that expand too far, or are too far apart in the reference configuration.
+        """Raise NotAllowed if parts expand too far, or are too far apart in the reference configuration.
 
         :param apart_m: distance of the centres of both parts [m] (joints,), in the directions that close the clearance
         """
@@ -176,11 +177,11 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return self._nodes(joints)
 
     def normals(self, run: Sampled) -> np.ndarray:
-        """Return the unit normals of the contacts (samples, joints, 3); zero for concentric parts."""
+        """Return the unit normals of the contacts (samples, joints, 3). They are zero for concentric parts."""
         return unit(run.columns[self.eccentricity])
 
     def touching(self, run: Sampled, joints: Any, tangential_force_N: np.ndarray) -> Contacts:
-        """Return the contacts, from the friction force on the inner part (samples, joints, 3)."""
+        """Return the contacts, for given friction forces on the inner part (samples, joints, 3)."""
         normal = self.normals(run)
         outer = self.radius_m(joints, self.outer)
         return Contacts(
@@ -237,7 +238,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
                 f"{radius}, friction coefficient {spread(joint.friction_coefficient for joint in items)}.")
 
     def friction_on_inner_N(self, joints: Any, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the friction on the inner part [N] (joints, 3) in one state of the solver."""
+        """Return the friction force on the inner part [N] (joints, 3) in one state of the solver."""
         raise NotImplementedError
 
     def add_friction(self, loads: Loads, joints: Any, state: Mapping[str, np.ndarray]) -> None:

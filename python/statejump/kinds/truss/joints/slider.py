@@ -52,8 +52,8 @@ class Slider(Item):
 
 @dataclass(frozen=True)
 class Sliders:
-    """Prismatic joints. The slide, axis · (displacement of the first node - displacement of the second), lies between
-    -clearance_minus_m and clearance_plus_m and has the friction limit friction_coefficient · normal_force_N."""
+    """Prismatic joints. The slide, axis · (displacement of the first node - displacement of the second node), lies
+    between -clearance_minus_m and clearance_plus_m. The friction limit is friction_coefficient · normal_force_N."""
 
     names: Sequence[str]
     nodes: np.ndarray  # (s, 2) int; the second is GROUND, or a node that the joint couples to the first across the axis
@@ -80,17 +80,17 @@ class Sliders:
 
     @property
     def have_springs(self) -> np.ndarray:
-        """Whether each slider has soft stops or a play. It is then a prismatic joint in the DEM, also on ground."""
+        """Whether each slider has soft stops or a play. If so, it is a prismatic joint in the DEM, even on ground."""
         return np.isfinite(self.stop_stiffness_N_per_m) | (self.play_m > 0)
 
     def soft_stop_N(self, slide_m: np.ndarray) -> np.ndarray:
-        """Return the force of soft stops on the sliders [N], positive against their axes; 0 for rigid stops."""
+        """Return the force of soft stops on the sliders [N], positive against their axes. It is 0 for rigid stops."""
         soft = np.isfinite(self.stop_stiffness_N_per_m)
         beyond = slide_m - np.clip(slide_m, -self.clearance_minus_m, self.clearance_plus_m)
         return np.asarray(np.where(soft, self.stop_stiffness_N_per_m, 0.0) * beyond)
 
     def beside_soft_stops_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the force on the sliders minus that of soft stops [N]."""
+        """Return the force on the sliders [N] without that of soft stops."""
         return np.asarray(state["slider_force_N"] - self.soft_stop_N(state["slide_m"]))
 
 
@@ -108,8 +108,8 @@ def _effective_modulus(sliders: Sliders) -> np.ndarray:
 
 
 def pad_hertz_stiffness(sliders: Sliders) -> np.ndarray:
-    """Return K of F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane: its floor or a stop. Both parts have one
-    material. The formulas are those of Hertz and Mindlin, independent of the DEM's contact law."""
+    """Return K of the Hertz law F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane, its floor or a stop. Both have
+    one material. The formulas are those of Hertz and Mindlin, independent of the DEM's contact law."""
     return physics.hertz_stiffness_N_per_m15(_effective_modulus(sliders), sliders.pad_radius_m)
 
 
@@ -121,7 +121,7 @@ def pads(sliders: Sliders) -> Pad:
 
 
 def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
-    """Return for every slider the unit normal of its floor, across its axis (s, 3)."""
+    """Return for every slider the direction normal to its axis in which its pad presses on its floor (s, 3)."""
     if truss.dimension == 2:
         return np.tile([0.0, 0.0, -1.0], (len(sliders.names), 1))
     found = []
@@ -135,7 +135,7 @@ AT_STOP = (3, 4)  # numbers of the engine's statuses "at a stop"
 
 
 def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
-    """Return the truss with further sliders along the axes of joints, without friction and stops."""
+    """Return the truss with additional sliders along the axes of given joints, without friction and stops."""
     sliders, count = truss.sliders, len(joints.names)
     nothing, no_stop = np.zeros(count), np.full(count, np.inf)
     more = {**dict.fromkeys(vars(sliders), nothing), "nodes": joints.nodes, "axis": joints.axis,
@@ -148,8 +148,8 @@ def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
 
 
 def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
-    """Return the largest force [N] (k,) across the axes of sliders from links, elements and dead loads on their first
-    nodes."""
+    """Return the largest force [N] (k,) across the axis of each slider, from links, elements and dead loads on its
+    first node."""
     truss, states = path.truss, path.states
     largest = []
     for node, axis in zip(joints.nodes[which, 0], joints.axis[which]):
@@ -166,8 +166,8 @@ def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
 
 
 class SliderType(AlongAxis[Slider, Sliders]):
-    """Sliders, supported by solver, motion and DEM. In the DEM a slider on ground is a pad on a floor, and one between
-    nodes an engine."""
+    """Sliders, which solver, motion and DEM support. In the DEM, a slider on ground is a pad on a floor; a slider
+    between two nodes is an engine of YADE."""
 
     section = "slider"
     noun = "a slider"
@@ -339,7 +339,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
 
     def _start_slip_m(self, truss: ResolvedTruss, joints: Sliders, slide_m: np.ndarray, friction_N: np.ndarray
                       ) -> np.ndarray:
-        """Return the slides [m] at which the friction force would be zero; with a play, the middle of its range."""
+        """Return the slide [m] of each slider without friction force; with a play, the middle of its range."""
         bend = np.divide(friction_N, pads(joints).tangential_N_per_m, out=np.zeros_like(slide_m), where=friction_N != 0)
         closed = slide_m - bend - np.sign(friction_N) * joints.play_m / 2
         if truss.start_friction == FRICTIONLESS:

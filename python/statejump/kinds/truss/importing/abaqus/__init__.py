@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decks of CalculiX and Abaqus. A table declares the use of every keyword; the readers follow it."""
+"""Reader of decks of CalculiX and Abaqus. A table declares how each keyword is used; the readers follow the table."""
 from __future__ import annotations
 
 from collections import Counter
@@ -71,7 +71,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
 
 
 def _check(model: Model, block: Block) -> bool:
-    """Return whether a keyword is read. Otherwise the table refuses it, or records it as without influence."""
+    """Return whether a keyword must be read. Otherwise its table says whether it is refused or has no influence."""
     deck = model.deck
     letters = block.name.replace(" ", "")
     if letters not in BY_LETTERS:
@@ -92,7 +92,7 @@ def _check(model: Model, block: Block) -> bool:
 
 
 def _parameter(known: Card, letters: str) -> Field | None:
-    """Return the parameter of a keyword. Abaqus accepts the first letters of a name that no other parameter has."""
+    """Return the parameter of a keyword. Abaqus accepts its first letters if they belong to no other parameter."""
     by_letters = {field.name.replace("_", ""): field for field in known.fields}
     if letters in by_letters or len(letters) < SHORTEST:
         return by_letters.get(letters)
@@ -116,7 +116,7 @@ def _check_parameters(model: Model, block: Block, known: Card) -> None:
 
 
 def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tuple[Block, Scope]]]:
-    """Return the steps and all blocks. The first step also has the blocks outside of steps."""
+    """Return the steps of a deck, and all blocks. Blocks outside of steps belong to the first step."""
     steps = [loads.Step()]
     current = steps[0]
     for block, scope in given:
@@ -130,7 +130,7 @@ def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tup
 
 
 def _bars(model: Model) -> None:
-    """Make bars of elements. An element becomes two bars if another item acts on its middle node."""
+    """Make bars from elements. An element becomes two bars if another item acts on its middle node."""
     shared = Counter(end for one in model.elements.values() for end in set(one.nodes))
     shared.update(term[0] for one in model.deck.equations for term in one.terms)
     shared.update(moment.node for moment in model.deck.moments)
@@ -160,7 +160,7 @@ def _bars(model: Model) -> None:
 
 
 def _taper(model: Model, bar: Bar, section: Section) -> None:
-    """Give a bar whose sizes vary between its nodes the area and the density of an equivalent uniform bar."""
+    """If the sizes of a bar differ at its nodes, give it the area and the density of an equivalent uniform bar."""
     sizes = [model.thickness.get(end, (0.0, 0.0)) for end in bar.nodes]
     if found := profiles.between(section.shape, *sizes):
         bar.area, mean = found
@@ -169,7 +169,7 @@ def _taper(model: Model, bar: Bar, section: Section) -> None:
 
 
 def _splits(model: Model, one: Element, shared: Counter[str]) -> bool:
-    """Return whether the middle node of an element is more than an interior point of a straight bar."""
+    """Return whether the middle node splits an element, because it is not just a point of a straight bar."""
     deck, middle = model.deck, one.nodes[1]
     first, between, last = (np.array(deck.nodes[end]) for end in one.nodes)
     if shared[middle] > 1 or any(deck.force.get(middle, ())) or middle in deck.mass or \

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts and instances: the blocks of a part are repeated for every instance, each with its scope."""
+"""Parts and instances of an assembly. Every instance repeats the blocks of its part, with its own scope."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from statejump.kinds.truss.importing.model import quoted
 
 
 def flat(model: Model, blocks: list[Block]) -> list[tuple[Block, Scope]]:
-    """Return all blocks with their scopes; the blocks of a part follow its instance."""
+    """Return all blocks of a deck with their scopes. The blocks of a part follow each of its instances."""
     parts: dict[str, list[Block]] = {}
     found: list[tuple[Block, Scope]] = []
     part: list[Block] | None = None

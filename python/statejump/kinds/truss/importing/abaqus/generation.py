@@ -26,7 +26,7 @@ def _shifted(model: Model, line: int, name: str, shift: int) -> str:
 
 
 def ngen(model: Model, block: Block, scope: Scope) -> None:
-    """Generate nodes between two others, on a straight line or an arc about a point."""
+    """Generate nodes between two given nodes, on a straight line or on an arc about a point."""
     line_kind = block.parameters.get("LINE", "").upper()
     if line_kind not in ("", "C"):
         model.deck.refuse("*NGEN, LINE", "parabola", block.line, "NGEN.LINE")
@@ -58,7 +58,7 @@ def ngen(model: Model, block: Block, scope: Scope) -> None:
 
 def _arc(model: Model, line: int, words: list[str], scope: Scope, start: np.ndarray, end: np.ndarray) -> tuple[
         np.ndarray, np.ndarray, float]:
-    """Return centre, a second point of the axis and the angle in degrees of an arc."""
+    """Return the centre of an arc, a second point of its axis, and its angle [°]."""
     if len(words) > 3 and words[3]:
         centre = _place(model, line, model.name(line, words[3], scope))
     else:

@@ -17,7 +17,7 @@ _NAME = re.compile(r"<\s*(\w+)\s*>")
 
 @dataclass
 class Block:
-    """A keyword: its line, its name and parameters in capitals, and its data lines as words."""
+    """A keyword of a deck: line number, name and parameters in capitals, and data lines as words."""
 
     line: int
     name: str
@@ -65,7 +65,7 @@ def _parameter(deck: Deck, number: int, text: str) -> dict[str, str]:
 
 
 def included(lines: list[str], place: int) -> tuple[str, int] | None:
-    """Return the file that ``*INCLUDE`` names and the number of its lines."""
+    """Return the file that an ``*INCLUDE`` names, and the number of lines of this statement."""
     text = lines[place].strip()
     if not text[:8].upper() == "*INCLUDE":
         return None
@@ -78,8 +78,8 @@ def included(lines: list[str], place: int) -> tuple[str, int] | None:
 
 
 def blocks(deck: Deck, path: Path) -> Iterator[Block]:
-    """Yield every keyword with its data lines, without empty ones. Names of ``*PARAMETER`` in angle brackets are
-    replaced by their values."""
+    """Yield every keyword with its data lines, without empty lines. The name of a ``*PARAMETER`` in angle brackets is
+    replaced by the value."""
     current: Block | None = None
     joined, begun = "", 0
     values: dict[str, str] = {}

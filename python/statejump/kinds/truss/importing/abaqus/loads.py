@@ -19,7 +19,7 @@ STATIC = ("STATIC", "COUPLED TEMPERATURE-DISPLACEMENT", "UNCOUPLED TEMPERATURE-D
 
 @dataclass
 class Step:
-    """Blocks of a step. Blocks before the first step belong to the model."""
+    """Blocks of a step of the deck. Blocks before the first step belong to the model."""
 
     line: int = 0
     perturbation: bool = False
@@ -34,9 +34,9 @@ class Step:
 class State:
     """Supports and loads at the end of a step.
 
-    :param held: directions by node
-    :param force: force by node and direction, with line
-    :param gravity: vectors by set, with line
+    :param held: held directions of each node
+    :param force: force by node and direction, with its line
+    :param gravity: vector by set of elements, with its line
     """
 
     held: dict[str, set[int]] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class State:
 
 
 def transform(model: Model, block: Block, scope: Scope) -> None:
-    """Set the directions of supports and loads for the nodes of a set."""
+    """Read a *TRANSFORM: directions in which supports and loads act on the nodes of a set."""
     kind = block.parameters.get("TYPE", "R").upper()[:1]
     values = model.numbers(*block.data[0]) if block.data else []
     if len(values) < 6:
@@ -78,7 +78,7 @@ def initial(model: Model, block: Block, scope: Scope) -> None:
 
 
 def run(model: Model, steps: list[Step]) -> None:
-    """Apply the supports of the model and all steps up to the chosen one."""
+    """Apply the supports of the model, and all steps up to the chosen step."""
     chosen = _chosen(model, steps)
     state = State()
     amplitudes = {block.parameters.get("NAME", "").upper(): block
@@ -89,7 +89,7 @@ def run(model: Model, steps: list[Step]) -> None:
 
 
 def _chosen(model: Model, steps: list[Step]) -> int:
-    """Return the index of the chosen step: that of --step, else the first static step, else the first step."""
+    """Return the index of the chosen step: the step of --step, else the first static step, else the first step."""
     wanted, count = model.deck.options.step or 0, len(steps) - 1
     if wanted > max(count, 1):
         raise NotAllowed("--step", wanted, code="undefined_step", steps=count, plural="s" if count != 1 else "")
@@ -105,8 +105,8 @@ def _chosen(model: Model, steps: list[Step]) -> int:
 
 
 def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block], last: bool) -> None:
-    """Apply a step. OP=NEW removes the state of earlier steps. A force replaces that of an earlier step; forces of one
-    step add up."""
+    """Apply a step. OP=NEW removes the state of earlier steps. A force replaces the force of an earlier step; forces of
+    one step add up."""
     if last and step.perturbation and (state.force or state.gravity or state.temperature):
         model.deck.refuse("*STEP, PERTURBATION", "perturbation_step", step.line,
                           "STEP.PERTURBATION")
@@ -149,7 +149,7 @@ def _clear(state: State, name: str) -> None:
 
 
 def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: float | None) -> float | None:
-    """Return the factor of AMPLITUDE= at the end of a step; None: the amplitude is refused."""
+    """Return the value of AMPLITUDE= at the end of a step, which multiplies loads; None if the amplitude is refused."""
     name = block.parameters.get("AMPLITUDE")
     if name is None:
         return 1.0
@@ -245,7 +245,7 @@ def _temperatures(model: Model, found: dict[str, float], block: Block, scope: Sc
 
 
 def _finish(model: Model, state: State) -> None:
-    """Write the resulting supports and loads into the deck, in the basic coordinate system."""
+    """Write the supports and loads after the last applied step into the deck, in the basic coordinate system."""
     deck = model.deck
     deck.temperature.update(state.temperature)
     for node, directions in state.held.items():
@@ -266,7 +266,7 @@ def _finish(model: Model, state: State) -> None:
 
 
 def _gravity(model: Model, state: State) -> None:
-    """Raise an error unless one gravity acts on all items with mass."""
+    """Raise an error unless the same gravity acts on all items that have mass."""
     acting: dict[str, np.ndarray] = {}
     for group, (vector, line) in state.gravity.items():
         for one in model.elements_of(line, group, Scope()):

@@ -17,7 +17,7 @@ NODES = re.compile(r"[A-Z]+(?:3D|2D)?(\d+)[A-Z]*$")
 
 
 def system(model: Model, block: Block, scope: Scope) -> None:
-    """Read the coordinate system of the nodes that follow; without data lines it is the basic system."""
+    """Read the coordinate system of the nodes that follow. Without data lines it is the basic system."""
     if not block.data:
         model.system = BASIC
         return
@@ -70,7 +70,7 @@ def add_node(model: Model, line: int, name: str, values: list[float]) -> None:
 
 
 def element(model: Model, block: Block, scope: Scope) -> None:
-    """Read elements of one type, each over as many lines as its nodes need."""
+    """Read the elements of one type. Each element extends over as many lines as its nodes need."""
     kind = model.needed(block, "TYPE").upper()
     known = ELEMENTS.get(kind)
     found = NODES.match(kind)
@@ -122,7 +122,7 @@ def check_type(model: Model, block: Block) -> None:
 
 
 def node_set(model: Model, block: Block, scope: Scope) -> None:
-    """Read a set of nodes: from numbers, other sets, or the nodes of elements."""
+    """Read a set of nodes, given by numbers, by other sets, or as the nodes of elements."""
     _set(model, block, scope, True)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared code of the keyword readers: numbers, names, sets of nodes and elements, scopes of instances."""
+"""Code that the keyword readers share: numbers, names, sets of nodes and elements, scopes of instances."""
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
@@ -17,10 +17,10 @@ from statejump.kinds.truss.importing.model import Deck, quoted
 
 @dataclass(frozen=True)
 class Scope:
-    """Scope of a block: the model, or an instance of a part.
+    """Scope of a block of a deck: the model, or an instance of a part.
 
-    :param prefix: prefix of names of nodes, elements and sets, with a final full stop
-    :param move: converts a position in the part to one in the assembly
+    :param prefix: prefix for the names of nodes, elements and sets, with a final full stop
+    :param move: function that converts a position in the part to a position in the assembly
     """
 
     prefix: str = ""
@@ -57,7 +57,7 @@ class Material:
 class Section:
     """Area and material of a bar.
 
-    :param shape: shape of a section whose sizes are given at nodes; empty: the area is given
+    :param shape: shape of a section whose sizes are given at nodes; empty: the area is given directly
     """
 
     area: float | None
@@ -101,7 +101,7 @@ class Model:
         return int(text)
 
     def name(self, line: int, text: str, scope: Scope) -> str:
-        """Return the name of a node or element: its number, preceded by the name of its instance."""
+        """Return the name of a node or element: its number, after the name of its instance and a full stop."""
         instance, stop, number = text.rpartition(".")
         prefix = f"{instance.upper()}." if stop else scope.prefix
         if not number.isdecimal() or not number.isascii() or len(number) > 12:
@@ -123,7 +123,7 @@ class Model:
         self.deck.room(line, self.set_items)
 
     def group(self, nodes: bool, word: str, scope: Scope) -> list[str] | None:
-        """Return the nodes or elements of a set; None: there is no such set."""
+        """Return the nodes or elements of a set; None if the set does not exist."""
         sets = self.node_sets if nodes else self.element_sets
         upper = word.upper()
         for name in (scope.prefix + upper, upper, upper.removeprefix("ASSEMBLY.")):
@@ -156,7 +156,7 @@ class Model:
         return [self.elements[name] for name in found if name in self.elements]
 
     def range(self, nodes: bool, prefix: str, first: int, last: int, step: int) -> list[str]:
-        """Return the existing nodes or elements among first, first + step, … up to last."""
+        """Return the existing nodes or elements with the numbers first, first + step, … up to last."""
         known: Collection[str] = self.deck.nodes.keys() if nodes else self.elements.keys()
         if (last - first) // step <= 2 * len(known):
             return [name for number in range(first, last + 1, step) if (name := f"{prefix}{number}") in known]

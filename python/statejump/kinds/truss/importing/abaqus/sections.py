@@ -21,9 +21,9 @@ def material(model: Model, block: Block, scope: Scope) -> None:
 
 
 def _of_material(model: Model, block: Block, counts: int) -> tuple[Material, list[float]] | None:
-    """Return the material of a block and its numbers; None: they depend on temperature or direction and are refused.
+    """Return the material that a block describes, and its numbers; None if these depend on temperature or direction.
 
-    :param counts: number of values before the temperature
+    :param counts: number of values in a data line before the temperature
     """
     if model.material is None:
         raise model.deck.fail(block.line, "deck_incomplete", f"*{block.name}", needed="a *MATERIAL before it")
@@ -51,8 +51,8 @@ def elastic(model: Model, block: Block, scope: Scope) -> None:
 
 
 def expansion(model: Model, block: Block, scope: Scope) -> None:
-    """Read a thermal expansion. ZERO is used only if the coefficient depends on temperature. Bars are stress-free at
-    their initial temperature."""
+    """Read a thermal expansion. The parameter ZERO is used only if the coefficient depends on temperature. Bars are
+    stress-free at their initial temperature."""
     kind = block.parameters.get("TYPE", "").upper()
     counts = {"ORTHO": 3, "ANISO": 6}.get(kind, 1)
     if kind not in (*ISOTROPIC, "ORTHO", "ANISO"):
@@ -85,7 +85,7 @@ def density(model: Model, block: Block, scope: Scope) -> None:
 
 
 def section(model: Model, block: Block, scope: Scope) -> None:
-    """Read area and material of the bars of a set. The set's other elements are refused where they are defined."""
+    """Read area and material of the bars in a set. The definition of other elements in the set refuses these."""
     name = model.needed(block, "MATERIAL").upper()
     if name not in model.materials:
         raise model.deck.fail(block.line, "deck_undefined", what_it_is="material", name=quoted(name))
@@ -147,7 +147,7 @@ def general(model: Model, block: Block, scope: Scope) -> None:
 
 
 def spring(model: Model, block: Block, scope: Scope) -> None:
-    """Read the stiffness of springs: a line of directions for SPRING1 and SPRING2, then the stiffness."""
+    """Read the stiffness of springs: one line of directions for SPRING1 and SPRING2, then the stiffness."""
     if not block.data:
         raise model.deck.fail(block.line, "deck_incomplete", "*SPRING", needed="a stiffness")
     found = model.elements_of(block.line, model.needed(block, "ELSET"), scope)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reader of Nastran bulk data. A table declares the use of every card; the readers follow it."""
+"""Reader of Nastran bulk data. A table declares how each card is used; the readers follow the table."""
 from __future__ import annotations
 
 from collections.abc import Callable

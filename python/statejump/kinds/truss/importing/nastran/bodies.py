@@ -15,7 +15,7 @@ ALL, MOVES = frozenset("123456"), frozenset("123")
 
 
 def rbar(reader: Reader, card: Card) -> None:
-    """Read a rigid bar of two nodes (RBAR, RBAR1) that couples all components."""
+    """Read a rigid bar between two nodes (RBAR, RBAR1). It must couple all translations."""
     first, second = (reader.node(card, place) for place in (1, 2))
     if card.name == "RBAR1":
         if not MOVES <= set(card[3] or "123456"):
@@ -39,7 +39,7 @@ def rbar(reader: Reader, card: Card) -> None:
 
 
 def rbe2(reader: Reader, card: Card) -> None:
-    """Read a rigid body (RBE2). If it couples only some components of nodes at one position, it becomes equations."""
+    """Read a rigid body (RBE2). If it couples only some components, at one position, it becomes equations."""
     first, components = reader.node(card, 1), set(card[2])
     texts = [text for text in card.fields[3:] if text]
     if texts and not texts[-1].isdecimal():  # its coefficient of thermal expansion
@@ -68,7 +68,7 @@ def rbe3(reader: Reader, card: Card) -> None:
 
 
 def rrod(reader: Reader, card: Card) -> None:
-    """Read a rod of constant length (RROD): one equation of the displacements along it."""
+    """Read a rod of constant length (RROD). It becomes one equation for the displacements of its ends along the rod."""
     first, second = (reader.node(card, place) for place in (1, 2))
     way = np.subtract(reader.deck.nodes[second], reader.deck.nodes[first])
     length = float(np.linalg.norm(way))
@@ -100,9 +100,9 @@ def mpc(reader: Reader, card: Card) -> None:
 
 
 def equations(reader: Reader, card: Card) -> list[Equation]:
-    """Return the equations of the translations in REFC; empty if the card needs rotations or has weights by components.
+    """Return the equations for the translations in REFC; empty if the card needs rotations or weights by component.
 
-    :raises Unreadable: a field is no number, or a node does not exist
+    :raises Unreadable: a field is not a number, or a node does not exist
     """
     node, components = reader.node(card, 2), [one for one in card[3] if one in MOVES]
     weighted = _weights(reader, card)
@@ -132,7 +132,7 @@ def equations(reader: Reader, card: Card) -> list[Equation]:
 
 
 def _weights(reader: Reader, card: Card) -> dict[str, float] | None:
-    """Return the weight of each node; None: the card has weights of some components only, UM or ALPHA."""
+    """Return the weight of each node; None if weights hold only for some components, or if the card has UM or ALPHA."""
     found: dict[str, float] = {}
     texts = [text for text in card.fields[4:] if text]
     while texts:

@@ -24,7 +24,7 @@ INCLUDE = re.compile(r"\s*INCLUDE\s+(\S.*)$|\s*INCLUDE(['\"].*)$", re.IGNORECASE
 
 @dataclass
 class Card:
-    """A card: its first line, its name, and the fields after the name, including those of continuations."""
+    """A card: number of its first line, name, and the fields after the name, including those of continuation lines."""
 
     line: int
     name: str
@@ -40,7 +40,7 @@ class Card:
 
 
 def included(lines: list[str], place: int) -> tuple[str, int] | None:
-    """Return the file that INCLUDE names, and the number of lines of the statement; a quoted name may span several."""
+    """Return the file of an INCLUDE, and the number of lines of the statement; a quoted name may span several."""
     found = INCLUDE.match(lines[place])
     if found is None:
         return None
@@ -56,7 +56,7 @@ def included(lines: list[str], place: int) -> tuple[str, int] | None:
 
 
 def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
-    """Return the lines of executive and case control, and the cards of the bulk data."""
+    """Divide a deck: return the lines of executive and case control, and the cards of the bulk data."""
     lines = list(Source(deck.path, included))
     begin = next((place for place, (_, line) in enumerate(lines) if BEGIN_BULK.match(line)), None)
     if begin is None:
@@ -69,7 +69,7 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
 
 
 def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
-    """Return the cards. A continuation belongs to the card with the matching mark, else to the card before it."""
+    """Return the cards. A continuation belongs to the card with the matching mark, else to the previous card."""
     cards: list[Card] = []
     marks = _Marks()
     orphans: list[tuple[int, str, list[str]]] = []
@@ -122,8 +122,8 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
 
 
 class _Marks:
-    """Cards by the continuation mark at the end of their last line. A continuation line repeats columns 2 to 8 of the
-    mark. Its first column may be any character: the mark PEG continues with +EG."""
+    """Finds cards by the continuation mark at the end of their last line. A continuation line repeats columns 2 to 8 of
+    the mark. Its first column may be any character: +EG continues the mark PEG."""
 
     def __init__(self) -> None:
         self._cards: dict[str, Card] = {}
@@ -135,15 +135,15 @@ class _Marks:
         self._whole[mark[1:]] = mark
 
     def take(self, own: str) -> Card | None:
-        """Return the card that a continuation belongs to; None: no card has its mark."""
+        """Return the card to which a continuation belongs; None if no card has its mark."""
         if not own:
             return None
         return self._cards.pop(own, None) or self._cards.pop(self._whole.get(own, ""), None)
 
 
 def _repeat(deck: Deck, number: int, head: str, fields: list[str], cards: list[Card]) -> None:
-    """Add cards that repeat the last one. ``=`` repeats its field, ``*(x)`` adds x to it, ``==`` repeats all further
-    fields, and ``=(n)`` repeats the card n times, by the fields after ``=(n)`` or by the previous replication line."""
+    """Add cards that repeat the last card with changes. ``=`` repeats a field, ``*(x)`` adds x to it, ``==`` repeats
+    all further fields. ``=(n)`` repeats the card n times, by the next fields or the previous replication line."""
     last = cards[-1]
     count = REPEAT.match(head)
     if count and any(fields):
@@ -190,8 +190,8 @@ def _extend(deck: Deck, number: int, card: Card, fields: list[str]) -> None:
 
 
 def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
-    """Return the first field of a line, its data fields (8 in small or free form, 4 in large), and the mark of its
-    continuation."""
+    """Return the first field of a line, its data fields (8 in small or free form, 4 in large form), and its
+    continuation mark."""
     if "," in line[:FREE_COMMA]:
         words = [word.strip() for word in line.split(",")]
         count = 4 if words[0].endswith("*") or words[0].startswith("*") else 8

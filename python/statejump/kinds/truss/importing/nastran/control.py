@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Executive and case control of a Nastran deck: selection of sets by the chosen subcase."""
+"""Executive and case control of a Nastran deck. The chosen subcase selects sets of loads and supports."""
 from __future__ import annotations
 
 import re
@@ -26,10 +26,10 @@ SELECTED = {
 
 @dataclass
 class Control:
-    """The content of the control sections.
+    """Content of the executive and case control.
 
-    :param given: whether there is a case control. Without one, a set counts if it is the only one of its kind
-    :param chosen: sets by kind
+    :param given: whether there is a case control. Without one, a set is used if it is the only one of its kind
+    :param chosen: numbers of the selected sets, by kind
     :param solution: value of SOL
     :param autospc: whether directions without stiffness are held
     """
@@ -53,7 +53,7 @@ class _Subcase:
 
 
 def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
-    """Return the selection of the subcase of ``--step``, or of the first one."""
+    """Return the selection of the subcase that ``--step`` names, or of the first subcase."""
     cend = next((place for place, (_, text) in enumerate(lines) if text.upper().startswith("CEND")), None)
     control = Control(given=cend is not None)
     for line, text in lines[:cend or 0]:

@@ -13,7 +13,7 @@ SAME = 1e-6  # relative tolerance of offsets: cards have seven digits
 
 
 def element(reader: Reader, card: Card, kind: str = "") -> str:
-    """Return the name of an element. A mass may have the number of a bar, as in decks that come with Nastran."""
+    """Return the name of an element. A mass and a bar may have the same number, as in decks that come with Nastran."""
     name = reader.whole(card, 0)
     if kind + name in reader.elements:
         raise reader.deck.fail(card.line, "deck_duplicate", what_it_is="element", name=name)
@@ -23,7 +23,7 @@ def element(reader: Reader, card: Card, kind: str = "") -> str:
 
 
 def rods(reader: Reader, card: Card) -> None:
-    """Read CROD and CTUBE: one element per card, or two in COSMIC's Nastran."""
+    """Read CROD and CTUBE. A card has one element, in COSMIC's Nastran also two."""
     for fields in (card.fields[:4], card.fields[4:]):
         if any(fields):
             bar(reader, Card(card.line, card.name, fields))
@@ -50,8 +50,8 @@ def bar(reader: Reader, card: Card) -> None:
 
 
 def _lengthened(reader: Reader, card: Card, ends: tuple[str, str]) -> float:
-    """Return the length of a bar with offsets over the distance of its nodes. Offsets that rotate the bar are refused.
-    Equal offsets shift it, which has no effect on nodes without rotations."""
+    """Return the ratio of the length of a bar with offsets to the distance of its nodes. Offsets that rotate the bar
+    are refused. Equal offsets shift the bar, which has no effect on nodes without rotations."""
     offsets, kinds = [], (card[7].upper() or "GGG").ljust(3, "G")[1:]
     for place, end, kind in zip((10, 13), ends, kinds):
         given = np.array([reader.number(card, at, 0.0) for at in range(place, place + 3)])
@@ -82,7 +82,7 @@ def conrod(reader: Reader, card: Card) -> None:
 
 
 def celas(reader: Reader, card: Card) -> None:
-    """Read a spring between two components (CELAS1, CELAS2); an empty component is the ground."""
+    """Read a spring between components of two nodes (CELAS1, CELAS2). An empty component means the ground."""
     name = element(reader, card)
     if card.name == "CELAS2":
         stiffness = reader.number(card, 1, 0.0)
@@ -107,7 +107,7 @@ def celas(reader: Reader, card: Card) -> None:
 
 
 def cbush(reader: Reader, card: Card) -> None:
-    """Read a spring in up to three directions, to the ground or, in the first direction, along its line."""
+    """Read a spring (CBUSH): in up to three directions to the ground, or in its first direction along its own line."""
     name = element(reader, card)
     number = reader.whole(card, 1, name)
     found = [one for one in reader.cards.get("PBUSH", []) if reader.whole(one, 0) == number]
@@ -150,7 +150,7 @@ def _bush(reader: Reader, card: Card) -> list[float]:
 
 
 def conm2(reader: Reader, card: Card) -> None:
-    """Read a mass at a node (CONM2). Its offset acts on rotations only and is omitted."""
+    """Read a mass at a node (CONM2). Its offset is omitted, because it acts only on rotations."""
     element(reader, card, "mass ")
     node = reader.node(card, 1)
     mass = reader.number(card, 3, 0.0)
@@ -158,7 +158,7 @@ def conm2(reader: Reader, card: Card) -> None:
 
 
 def conm1(reader: Reader, card: Card) -> None:
-    """Read a mass matrix (CONM1), which must be one mass for all directions."""
+    """Read a mass matrix (CONM1). It must represent the same mass in all directions."""
     element(reader, card, "mass ")
     node = reader.node(card, 1)
     first, second, third = (reader.number(card, place, 0.0) for place in (3, 5, 8))
@@ -180,7 +180,7 @@ def weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
 
 
 def _section(reader: Reader, line: int, of: Bar, name: str) -> Property:
-    """Return the property of a bar: the one for its element type, or the only one with this number."""
+    """Return the property of a bar: the property for its element type, or the only property with this number."""
     found = reader.properties.get(name, {})
     if of.kind in found:
         return found[of.kind]
@@ -240,7 +240,7 @@ def cmass(reader: Reader, card: Card) -> None:
 
 
 def take_components(reader: Reader) -> None:
-    """Convert component masses to nodal masses; they must be equal in all directions that are not held."""
+    """Convert masses of single components to nodal masses. Masses must be equal in all directions that are not held."""
     for node, masses in reader.component_masses.items():
         card = reader.component_cards[node]
         axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])

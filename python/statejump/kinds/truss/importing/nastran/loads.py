@@ -31,13 +31,13 @@ def select(reader: Reader, control: Control) -> None:
 
 
 def _is_load(name: str) -> bool:
-    """Return whether LOAD = can select a card; true also for cards of heat transfer and unknown cards."""
+    """Return whether LOAD = can select a card. This is also true for cards of heat transfer and for unknown cards."""
     known = CARDS.get(name)
     return known is None or known.sets == "load" or known.what in (HEAT, DYNAMIC) or name in ("LOAD", "LOADADD")
 
 
 def _only(reader: Reader, kind: str) -> str | None:
-    """Return the only set of a kind in a deck without case control. :raises Unreadable: there are several"""
+    """Return the only set of a kind in a deck without case control. :raises Unreadable: there are several sets"""
     first: dict[str, Card] = {}
     if kind == "load":
         combined = [card for name in ("LOAD", "LOADADD") for card in reader.cards.get(name, [])]
@@ -58,7 +58,7 @@ def _only(reader: Reader, kind: str) -> str | None:
 
 
 def _expanded(reader: Reader, kind: str, chosen: str) -> dict[str, float]:
-    """Return the sets that a combined set (such as LOAD) refers to, with their factors."""
+    """Return the sets to which a combined set (such as LOAD) refers, with their factors."""
     found: dict[str, float] = {}
     if kind == "load":
         for name in ("LOAD", "LOADADD"):
@@ -92,7 +92,7 @@ def moment(reader: Reader, card: Card) -> None:
 
 
 def _vector(reader: Reader, card: Card) -> tuple[str, np.ndarray]:
-    """Return the node of a card and its force or moment, multiplied by the factor of its set."""
+    """Return the node of a load card, and its force or moment multiplied by the factor of its set."""
     factor = reader.factor(card, "load") or 0.0
     node = reader.node(card, 1)
     if card.name in ("FORCE", "MOMENT"):
@@ -126,7 +126,7 @@ def gravity(reader: Reader, card: Card) -> None:
 
 
 def pload1(reader: Reader, card: Card) -> None:
-    """Convert a load along a bar (PLOAD1) to forces on its ends; a load across the bar would bend it."""
+    """Convert a load along a bar (PLOAD1) to forces on its ends; refuse a load across the bar, which bends it."""
     factor, name = reader.factor(card, "load") or 0.0, reader.whole(card, 1)
     if name not in reader.bars:
         raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
@@ -161,7 +161,7 @@ def pload1(reader: Reader, card: Card) -> None:
 
 
 def temperatures(reader: Reader) -> None:
-    """Read TEMP and TEMPD of the load set and of the stress-free set."""
+    """Read TEMP and TEMPD cards of the load set and of the set with the stress-free temperatures."""
     for kind, found in (("temperature", reader.deck.temperature), ("initial", reader.deck.initial)):
         default = None
         for card in reader.cards.get("TEMP", []):

@@ -17,7 +17,7 @@ EPZERO = 1e-8
 
 
 def read_nodes(reader: Reader) -> None:
-    """Read GRID cards. Their coordinate systems may refer to other GRIDs, in any order."""
+    """Read GRID cards. Their coordinate systems may refer to other GRID cards, in any order."""
     defaults = (reader.cards.get("GRDSET") or [Card(0, "GRDSET")])[0]
     reader.frames["0"] = BASIC
     grids: dict[str, Card] = {}
@@ -36,7 +36,7 @@ def read_nodes(reader: Reader) -> None:
 
 
 class _Places:
-    """Computes positions of nodes and systems, which may depend on each other in a chain without a loop."""
+    """Computes the positions of nodes and coordinate systems, which may refer to each other without a loop."""
 
     def __init__(self, reader: Reader, grids: dict[str, Card], defaults: Card) -> None:
         self.reader, self.grids = reader, grids
@@ -58,7 +58,7 @@ class _Places:
         self.reader.deck.take(card.name, "coordinate system")
 
     def place_all(self) -> None:
-        """Find the positions of all nodes and systems, in the order of their dependence."""
+        """Compute the positions of all nodes and coordinate systems, each after those to which it refers."""
         for kind, names in (("system", list(self.systems)), ("node", list(self.grids))):
             for name in names:
                 waiting = [(kind, name)]
@@ -119,7 +119,7 @@ class _Places:
 
 
 def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
-    """Hold nodes in components of their displacement systems; components may be separated by blanks."""
+    """Hold components of nodes in their displacement systems. Blanks may separate the components."""
     components = "".join(components.split())
     if not set(components) <= set("0123456"):
         raise reader.fail(card, "deck_bad_value",
@@ -156,8 +156,8 @@ def spc(reader: Reader, card: Card) -> None:
 
 
 def hold_singular(reader: Reader) -> None:
-    """Hold components without stiffness, in displacement systems, except at ends of beams, which are stiff in
-    Nastran."""
+    """Hold components without stiffness, in displacement systems. Ends of beams are excepted: in Nastran they are
+    stiff."""
     deck = reader.deck
     stiffness: dict[str, np.ndarray] = {}
     bent = {end for bar in deck.bars if bar.bends for end in bar.nodes}

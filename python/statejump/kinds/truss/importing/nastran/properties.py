@@ -16,7 +16,7 @@ ELEMENTS = {"PROD": "CROD", "PTUBE": "CTUBE", "PBAR": "CBAR", "PBARL": "CBAR", "
 
 
 def mat1(reader: Reader, card: Card) -> None:
-    """Read a material (MAT1). Two of E, G and Poisson's ratio determine the third."""
+    """Read a material (MAT1). Any two of E, G and Poisson's ratio determine the third."""
     modulus, shear, ratio = (reader.optional(card, at) for at in (1, 2, 3))
     if modulus is None and shear is not None:
         modulus = 2 * (1 + (ratio or 0.0)) * shear
@@ -38,7 +38,7 @@ def simple(reader: Reader, card: Card) -> None:
 
 
 def ptube(reader: Reader, card: Card) -> None:
-    """Read a tube from outer diameter and wall thickness; thickness 0 means a solid rod."""
+    """Read a tube (PTUBE) from outer diameter and wall thickness. Thickness 0 means a solid rod."""
     outer, wall = reader.number(card, 2), reader.number(card, 3, 0.0)
     second = reader.number(card, 5, 0.0) or outer
     areas = [pi * ((wall or size / 2) * (size - (wall or size / 2))) for size in (outer, second)]
@@ -61,14 +61,14 @@ def pbarl(reader: Reader, card: Card) -> None:
 
 
 def _shape(reader: Reader, card: Card) -> tuple[str, str]:
-    """Return the shape of a section, and the reason if its area is unknown."""
+    """Return the shape of a section, and the reason to report if its area cannot be computed."""
     if card[2] and card[2].upper() not in ("MSCBML0", "MSCBMLO"):  # the second spelling is a common mistake
         return "", f"group {quoted(card[2])} has sections of its own"
     return card[3].upper(), f"section {quoted(card[3])[1:-1]}: no known shape with all its dimensions"
 
 
 def pbeaml(reader: Reader, card: Card) -> None:
-    """Read a section by shape and dimensions at one or several stations (PBEAML)."""
+    """Read a beam section (PBEAML) from its shape and its dimensions at one or several stations."""
     shape, why = _shape(reader, card)
     count = profiles.NASTRAN.get(shape, (0, None))[0]
     stations: list[tuple[float, float | None, float]] = []
@@ -100,7 +100,7 @@ def _number(reader: Reader, card: Card, text: str) -> float:
 
 
 def pbeam(reader: Reader, card: Card) -> None:
-    """Read a section by numbers at one or several stations, followed by lines of shear and warping (PBEAM)."""
+    """Read a beam section (PBEAM): numbers at one or several stations, followed by lines of shear and warping."""
     rows = card.rows()
     stations = [(0.0, reader.optional(card, 2), reader.number(card, 7, 0.0))]
     place = 1 if len(rows) > 1 and rows[1][0].upper() in STATIONS else 2

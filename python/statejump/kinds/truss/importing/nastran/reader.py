@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared code of the card readers: numbers, nodes, sets, and the deck read so far."""
+"""Code that the card readers share: numbers, nodes, sets, and the part of the deck that has been read."""
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
@@ -27,8 +27,8 @@ class Material:
 class Property:
     """Section of a bar.
 
-    :param area: None: unknown, with the reason
-    :param mass_area: mean area, for the mass; it differs from ``area`` in a taper
+    :param area: area; None: unknown, with the reason in ``why``
+    :param mass_area: mean area, which determines the mass; it differs from ``area`` in a taper
     :param more: non-structural mass per length
     """
 
@@ -41,7 +41,7 @@ class Property:
 
 @dataclass
 class Reader:
-    """A deck while its cards are read.
+    """State of the reader of a deck while it reads the cards.
 
     :param sets: active sets by kind, with the factor of each
     """
@@ -99,7 +99,7 @@ class Reader:
         return name
 
     def several(self, card: Card, items: list[str]) -> list[str]:
-        """Return the nodes of a list; ``THRU`` may include numbers that do not exist."""
+        """Return the nodes of a list. A range with ``THRU`` may contain numbers that are not nodes."""
         nodes: list[str] = []
         place = 0
         while place < len(items):
@@ -117,7 +117,7 @@ class Reader:
         return nodes
 
     def factor(self, card: Card, kind: str) -> float | None:
-        """Return the factor of the card's set; None: the set is inactive."""
+        """Return the factor of the set to which a card belongs; None if the set is inactive."""
         return self.sets.get(kind, {}).get(self.whole(card, 0))
 
     def frame(self, card: Card, place: int) -> Frame:

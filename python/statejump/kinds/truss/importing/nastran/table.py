@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table of all known bulk data cards and case control commands; each is in exactly one class."""
+"""Table of all known bulk data cards and case control commands. Each is used, without influence, or unsupported."""
 from __future__ import annotations
 
 from statejump.kinds.truss.importing.contract import Card, idle, refused, table, used
