@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of time steps by the JointStepper and by YADE's loop; writes results/bench/steppers.md and steppers.csv.
+"""Measures the cost of time steps of the JointStepper and of YADE's loop; writes results/bench/steppers.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py
 
-CPU time of the steps, without the start of YADE, on one thread: a chain of 1000 joints, the damped rib and Table 1. The
-chain is run without samples; rib and Table 1 with the samples of the case and with few.
+The cost is the CPU time of the steps on one thread, without the start of YADE. The cases are a chain of 1000 joints,
+the damped rib and Table 1 of the paper. The chain stores no samples; rib and Table 1 run with the case's number of
+samples and with few samples.
 """
 from __future__ import annotations
 

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mutation test of the guard: every wrong declaration of YADE's interface must be refused.
 
-Every mutation is an edit of a copy of the declared headers. It is compiled without the static assertions. The guard
-inside a running YADE must report it, without build identifiers and before it calls any code of YADE. A crash does not
-count as a refusal. An edit that changes neither sizes nor members nor tables is replaced by another one.
+Every mutation edits a copy of the headers that declare the interface; the copy is compiled without static assertions.
+The guard inside a running YADE must report the mutation without using build identifiers, before it calls any code of
+YADE. A crash does not count as a refusal. An edit that changes neither sizes nor members nor virtual function tables is
+replaced by another edit.
 """
 from __future__ import annotations
 
@@ -41,8 +42,8 @@ class Examination:
         self.description = said["description"]
 
     def examine(self, mutation: Mutation) -> tuple[str, str, str]:
-        """Return the check that detected a mutation, its message, and the fault of the guard (empty: none). The check
-        is "" for an edit without effect."""
+        """Return the check that detected a mutation, the guard's message, and a fault of the guard (empty: none). The
+        check is "" for an edit without effect."""
         place = self.compiler.folder / mutation.name.replace(" ", "_")
         headers = place / "include"
         try:
@@ -69,8 +70,8 @@ class Examination:
 
 
 def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return message and fault for the unchanged declarations, which must be accepted without change of the user's
-    scene."""
+    """Return message and fault of the guard for the unchanged declarations. The guard must accept them and leave the
+    user's scene unchanged."""
     place = compiler.folder / "unmutated"
     if compiler.static_asserts_refuse(compiler.headers):
         return "", "static assertions refuse it"
@@ -83,7 +84,8 @@ def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
 
 
 def other_build(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return message and fault for a library with an unknown build identifier: the message must contain a command."""
+    """Return message and fault of the guard for a library with an unknown build identifier. The message must contain a
+    command."""
     place = compiler.folder / "other_build"
     package = place / "statejump_yade"
     package.mkdir(parents=True)
