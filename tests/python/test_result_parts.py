@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Result files in which any one part is missing, or is a number instead of a text or the other way round.
+"""Result files in which any single part is missing, or has numbers instead of texts or texts instead of numbers.
 
-The checksum fits: such a file was made by another program, or on purpose. Whatever the commands need of it and is not
-there is one sentence with status 2 that says where, and what they do not need is not missed.
+The checksum is valid, as in a file written by another program. If a command needs the part, it ends with status 2 and
+one sentence that names the part; otherwise it works.
 """
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def without(file: h5py.File, place: str) -> None:
 
 
 def retyped(file: h5py.File, place: str) -> None:
-    """Texts instead of numbers of the same shape, numbers instead of texts."""
+    """Replace numbers by texts in an array of the same shape, or texts by numbers."""
     found, kept = file[place], dict(file[place].attrs)
     is_text, shape = h5py.check_string_dtype(found.dtype) is not None, found.shape
     del file[place]
@@ -43,7 +43,7 @@ def retyped(file: h5py.File, place: str) -> None:
 
 
 def spoiled(whole: Path, path: Path) -> Iterator[str]:
-    """Write a file with every part spoiled in turn, and say which."""
+    """Write a file once for every part, with this part removed or retyped; yield a description of each change."""
     content, places = whole.read_bytes(), list[str]()
     with h5py.File(whole) as file:
         file.visit(places.append)
@@ -76,7 +76,7 @@ def test_whatever_part_is_missing_or_of_another_type(statejump: Callable, tmp_pa
 
 
 def test_a_text_that_is_not_utf8(statejump: Callable, tmp_path: Path, cases: Path) -> None:
-    """h5py hands such a byte on as half of a pair, with which no page can be written."""
+    """h5py returns an invalid UTF-8 byte as half of a surrogate pair, which cannot be written to a page."""
     assert statejump("reduced", cases / "table1.toml", "--results", tmp_path, "--quiet").status == 0
     path = tmp_path / "table1" / "reduced.h5"
     with h5py.File(path, "r+") as file:
@@ -87,7 +87,8 @@ def test_a_text_that_is_not_utf8(statejump: Callable, tmp_path: Path, cases: Pat
 
 
 def test_numbers_without_an_end(statejump: Callable, tmp_path: Path, cases: Path) -> None:
-    """What is beyond any page is one sentence, nothing of numpy beside it; a straight line is not looked for in it."""
+    """Numbers too large for a page give one sentence and no warning of numpy. No straight line is fitted to such
+    numbers."""
     assert statejump("sweep", cases / "campaigns" / "table1_friction.toml", "--results", tmp_path, "--quiet").status == 0
     path = next(tmp_path.glob("*/samples.h5"))
     with h5py.File(path, "r+") as file:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What case files are made of, on a file that is made up: every rule at its ends, with its code and fields."""
+"""Rules of case files, tested on a made-up kind of file: every rule just inside and outside its limits, with its error
+code and fields."""
 from __future__ import annotations
 
 import copy

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Iwan joints: what the case, drawing and commands say; identification writes what a case takes and finds it again."""
+"""Iwan joints in cases, drawings and commands. The section that identification writes is valid in a case, and
+identifying the computed loop gives the same joint."""
 from __future__ import annotations
 
 import tomllib
