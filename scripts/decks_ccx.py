@@ -24,8 +24,7 @@ def installed() -> bool:
 
 
 def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Mapping[str, str]) -> str:
-    """Return the largest difference between displacements over the largest displacement, or the reason why it is
-    missing.
+    """Return the largest difference between displacements over the largest displacement, or why it is missing.
 
     :param step: number of the step that was imported
     :param ours: displacements of this project by node name in the case

@@ -86,7 +86,7 @@ def cpp_targets(members: Path) -> dict[str, list[str]]:
 
 
 def yade_targets(page: str) -> dict[str, list[str]]:
-    """Return, for every attribute of the plugin, the classes that have it, read from the page of the classes."""
+    """Return the classes that have each attribute of the plugin, read from the page of classes."""
     found: dict[str, list[str]] = {}
     current = ""
     for kind, name in re.findall(r"\.\. py:(class|attribute|function):: (\w+)", page):

@@ -150,7 +150,7 @@ def _printed(cell: NotebookNode) -> str:
 
 
 def _missing(wanted: list[str], printed: str) -> str | None:
-    """Return the first wanted line that was not printed in the wanted order; None: all lines were printed."""
+    """Return the first wanted line that was not printed in this order; None: all were printed."""
     lines = iter(printed.splitlines())
     for line in wanted:
         if not any(line in given for given in lines):

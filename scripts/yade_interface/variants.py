@@ -12,8 +12,8 @@ _MEMBERS = ["class", "member", "offset_bytes", "size_bytes", "seen_by", "in_head
 
 @dataclass
 class Interface:
-    """Measured interface of YADE by class: sizes [byte], members (offset [byte], type), virtual function tables, and
-    names of stored attributes."""
+    """Interface of YADE by class: sizes [byte], members (offset [byte], type), virtual function tables, stored names.
+    """
 
     name: str
     sizes: dict[str, int] = field(default_factory=dict)

@@ -3,12 +3,12 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/histories.py [--members 10000] [--times 1000]
 
-There are two trusses. The umbrella has ribs with cables between them; each rib has two members and a clearance joint.
-Most of its joints slip at the same time. The mast is a double-layer grid, two bays of 0.2 m across. Its length depends
-on the number of members (125 m for 10 000). At every tenth bay the chords have latches: sliders with friction and free
-play. `statejump.orbit` computes the temperatures of every member over ten orbits, from a sunlit fraction that differs
-by member. The case reads them from an HDF5 file. Each row of the results is computed in a separate process, so that its
-memory can be measured. Writes results/bench/histories.md.
+There are two trusses. The umbrella has ribs of two members and a clearance joint, with cables between the ribs; most
+joints slip at once. The mast is a double-layer grid, two bays of 0.2 m across, whose length depends on the number of
+members (125 m for 10 000). At every tenth bay the chords have latches: sliders with friction and free play.
+`statejump.orbit` computes the temperatures of every member over ten orbits, with individual sunlit fractions; the case
+reads them from HDF5. Every row of results is computed in a separate process, to measure its memory. Writes
+results/bench/histories.md.
 """
 from __future__ import annotations
 

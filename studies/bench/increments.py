@@ -4,9 +4,8 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/increments.py [--output DIR]
 
-The paths are those of shipped trusses, with several numbers of increments per heating or cooling branch. The errors are
-the energy residue at every state, and the distance of the end positions of the nodes from those of the path with the
-most increments.
+Shipped trusses run with several numbers of increments per heating or cooling branch. Errors are the energy residue at
+every state, and the distance of the final nodes from those of the path with the most increments.
 """
 from __future__ import annotations
 

@@ -4,8 +4,8 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_size.py [--case CASE] [--largest JOINTS]
 
-The structures are chains of blocks, and umbrellas with cables and friction coefficients between 0.1 and 0.2. Each runs
-with equal time steps and with steps controlled by a tolerance. The largest structures take minutes of CPU.
+Chains of blocks, and umbrellas with cables and friction between 0.1 and 0.2, run with equal time steps and with steps
+controlled by a tolerance. The largest ones take minutes of CPU.
 """
 from __future__ import annotations
 

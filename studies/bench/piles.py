@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random frictional contact problems of piles of rigid bodies, as in granular and masonry mechanics.
 
-A problem has the Delassus matrix W = H M^-1 H^T and the vector q = H v. The contact velocity u = 0 is then possible, so
-a solution exists (Acary and Cadoux 2013). If contacts outnumber the degrees of freedom, W is rank-deficient.
+Since the Delassus matrix is W = H M^-1 H^T and q = H v, the contact velocity u = 0 is possible, so a solution exists
+(Acary and Cadoux 2013). If contacts outnumber the degrees of freedom, W is rank-deficient.
 """
 from __future__ import annotations
 

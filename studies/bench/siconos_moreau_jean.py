@@ -5,9 +5,8 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/siconos_moreau_jean.py
 
 A bearing hangs on an elastic link; a journal bounces in it, and a second journal bounces in a bore of the first. The
-model has two clearance revolutes with rigid contact, Coulomb friction and Newton's restitution, and five degrees of
-freedom. Both schemes use the same theta and time steps. No other program of the project needs Siconos (Debian:
-python3-siconos).
+model has rigid contact, Coulomb friction, Newton's restitution and five degrees of freedom. Both schemes use the same
+theta and time steps. This program needs Siconos (Debian: python3-siconos).
 """
 from __future__ import annotations
 

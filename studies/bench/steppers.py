@@ -4,9 +4,8 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py
 
-The cost is the CPU time of the steps on one thread, without the start of YADE. The cases are a chain of 1000 joints,
-the damped rib and Table 1 of the paper. The chain stores no samples; rib and Table 1 run with the case's number of
-samples and with few samples.
+The cost is the CPU time of the steps on one thread, without the start of YADE. A chain of 1000 joints runs without
+samples; the damped rib and Table 1 run with the samples of the case and with few.
 """
 from __future__ import annotations
 

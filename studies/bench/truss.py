@@ -4,11 +4,10 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py [--largest 1000000] [--trusses ring umbrella]
 
 Two trusses run through one temperature cycle with ten points for heating and ten for cooling: the ring of `statejump
-truss ring` with preload, and the umbrella with cables between its ribs. Friction coefficients of the umbrella are
-scattered, so that every joint slips at a different temperature. Nodes, links and joints come from HDF5 tables beside
-the case file; for 100 000 joints also as Python objects. OMP_NUM_THREADS sets the number of threads. Every row is
-computed in a separate process, so that its memory can be measured; another process makes the tables. Writes
-results/bench/truss.md after every row.
+truss ring` with preload, and the umbrella with cables between its ribs. The umbrella's friction is scattered, so that
+every joint slips at a different temperature. Nodes, links and joints are read from HDF5 tables; for 100 000 joints also
+passed as Python objects. OMP_NUM_THREADS sets the number of threads. Every row is computed in a separate process, to
+measure its memory. Writes results/bench/truss.md after every row.
 """
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ class Version:
     """A process that solves case files with one version of the built package.
 
     :param package: folder with the package
-    :param limit_s: CPU time of a path [s] after which its solution is cancelled
+    :param limit_s: CPU time [s] after which a path is cancelled
     """
 
     def __init__(self, package: Path, limit_s: float) -> None:

@@ -100,9 +100,9 @@ def _events(case: SpringSliderCase, corners: Sequence[float]) -> list[tuple[str,
 def kinks(change: np.ndarray, moved: np.ndarray, slope: float) -> list[tuple[str, float]]:
     """Return the temperature changes at which a piecewise linear path begins or ceases to slide.
 
-    :param change: temperature changes along the path, in order of time
+    :param change: temperature changes, in order of time
     :param moved: displacement at each temperature change
-    :param slope: displacement per temperature change of a sliding piece
+    :param slope: displacement per temperature change while sliding
     """
     slides = np.abs(np.diff(moved) / np.diff(change)) > 0.5 * abs(slope)
     found = []

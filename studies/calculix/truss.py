@@ -4,9 +4,8 @@ they slip in a second deck, see :mod:`studies.calculix.truss_sliding`.
 
 CalculiX is linear, this project's solver is not. The solver's displacement u is therefore linearised at ΔT = 0 and zero
 load: r(h) = (u(h) - u(-h))/(2 h) with temperatures and loads scaled by h, extrapolated as (4 r(h/2) - r(h))/3 with h =
-STEP. The error is of order (h u/height)⁴, with the height of the truss, so it is largest for shallow trusses. CalculiX
-prints seven digits. A second run gives seven more: equations with two auxiliary nodes make CalculiX print differences
-from the displacements of the first run.
+STEP. The error is of order (h u/height)⁴, largest for shallow trusses. CalculiX prints seven digits. A second run gives
+seven more: equations with two auxiliary nodes make CalculiX print differences from the displacements of the first run.
 """
 from __future__ import annotations
 
@@ -149,8 +148,8 @@ def pinned(truss: ResolvedTruss) -> ResolvedTruss:
 
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
-    """Return the derivative of the solver's displacements (n, 3) [m] with respect to a common factor of temperatures
-    and loads, at factor 0."""
+    """Return the derivative of the solver's displacements (n, 3) [m] by a common factor of temperatures and loads, at
+    0."""
     def moved(step: float) -> Numbers:
         count = len(truss.links.names)
         program = TrussThermal(shape="triangle", temperature_change_max_K=1.0, period_s=1.0)

@@ -107,7 +107,7 @@ def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
 
 @dataclass
 class Bricks:
-    """Brick elements with a cross-section of 1 m², and equations for the displacements of their ends.
+    """Brick elements with a cross-section of 1 m², and equations for their ends.
 
     :param truss: the truss; its nodes have the first numbers
     """
@@ -147,8 +147,8 @@ class Bricks:
         return corner + 1
 
     def tie(self, end: int | None, ends: Sequence[tuple[int, float]], along: Numbers) -> None:
-        """Add the equation "displacement of a brick's end = signed sum of node displacements along a direction".
-        Without a brick (None), its displacement is 0."""
+        """Add the equation "displacement of a brick's end (0 without a brick) = signed sum of node displacements along
+        a direction"."""
         terms = [(int(node) + 1, axis + 1, -sign * float(along[axis])) for node, sign in ends for axis in range(3)
                  if along[axis] and not self.truss.nodes.fixed[node, axis]]
         if end is None:

@@ -67,7 +67,7 @@ class Known:
 
 
 def kernel(law: str, model: str) -> Known:
-    """Return the loop of a contact kernel under 10 N of normal force, slid cyclically with the amplitude 2.5 μN/k."""
+    """Return the loop of a contact kernel under 10 N, slid cyclically with the amplitude 2.5 μN/k."""
     young, shear, radius, mu, load = 38.5e9, 7.9e9, 0.01, 0.3, 10.0
     stiffness = 8 * shear * (3 * load * radius / (4 * young)) ** (1 / 3)
     reach = 2.5 * mu * load / stiffness

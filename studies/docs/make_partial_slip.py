@@ -26,8 +26,8 @@ PUNCHES = 20000
 
 @dataclass(frozen=True)
 class Case:
-    """A loading branch between two points (normal force N, tangential force T), in units of LOAD, after a path to the
-    first point."""
+    """A branch between two points (normal force N, tangential force T) in units of LOAD, after a path to the first
+    point."""
 
     name: str
     path: tuple[tuple[float, float], ...]

@@ -130,7 +130,7 @@ def residue_J(columns: Columns | Run, sample: int = -1) -> float:
 
 
 def instants(case: UmbrellaCase, finest: Run) -> dict[str, int]:
-    """Return the samples at which the energy account is evaluated, chosen from the run with the smallest time step."""
+    """Return the samples at which the energy account is evaluated, from the run with the finest steps."""
     hottest = largest_temperature(finest)
     found = {INSTANTS[1]: max(hottest - 1, 1), INSTANTS[2]: len(finest) - 1}
     first = finest.events.first("first_contact")

@@ -48,7 +48,7 @@ def equilibrium(
 ) -> tuple[float, float]:
     """Return theta2 and theta4 [rad] of the slipping joint at ΔT = 0, with an applied couple on each link.
 
-    :param guess: nearby state of the elastic quasi-static loop; its force ratio F_t/F_N is kept
+    :param guess: nearby state of the elastic loop; its force ratio F_t/F_N is kept
     """
     frame = np.array([case.frame.length_m, 0.0])
     links = (case.link_ab, case.link_bc)

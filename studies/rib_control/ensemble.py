@@ -64,8 +64,7 @@ def upper_bound(values: np.ndarray) -> float:
 def ensemble_measure(
     case: UmbrellaCase, runs: int, progress: Callable[[], None] = lambda: None
 ) -> dict[str, float]:
-    """Return mean, 95 % quantile and upper bound of this quantile, for |jump| and for the largest |deflection| of θ2
-    [rad].
+    """Return mean, 95 % quantile and its upper bound, for |jump| and for the largest |deflection| of θ2 [rad].
 
     The initial states depend only on the seed of the case, so the result is reproducible.
     """

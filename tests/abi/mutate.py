@@ -3,9 +3,8 @@
 """Mutation test of the guard: every wrong declaration of YADE's interface must be refused.
 
 Every mutation edits a copy of the headers that declare the interface; the copy is compiled without static assertions.
-The guard inside a running YADE must report the mutation without using build identifiers, before it calls any code of
-YADE. A crash does not count as a refusal. An edit that changes neither sizes nor members nor virtual function tables is
-replaced by another edit.
+The guard inside a running YADE must report the mutation without build identifiers, before it calls any code of YADE. A
+crash is no refusal. An edit that changes neither sizes nor members nor virtual function tables is replaced by another.
 """
 from __future__ import annotations
 

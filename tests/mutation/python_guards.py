@@ -90,9 +90,9 @@ class PythonGuards(Guards):
             self.patience[guard] = max(LEAST_SECONDS, PATIENCE * self.seconds[guard])
 
     def order(self, mutant: Mutant) -> list[str]:
-        """Return the guards (test files) to run for a mutant, the quickest first. Among the files that execute the
-        mutant, they are the module's own and the few that execute most lines of the mutated file per second. If no
-        trace contains the mutated line, any guard of the file may execute it."""
+        """Return the guards (test files) to run for a mutant, the quickest first: of the files that execute the mutant,
+        the module's own and the few that execute most lines per second. If no trace has the mutated line, any guard of
+        the file may execute it."""
         if not self.executed:
             self.prepare([mutant])
         lines = set(statement_lines((self.folder / mutant.file).read_text(encoding="utf-8"), mutant.start))

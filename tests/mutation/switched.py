@@ -35,8 +35,7 @@ _DECLARES = re.compile(r"(?:const\s|constexpr\s|static\s|auto\b|using\b|template
 
 @dataclass(frozen=True)
 class _Place:
-    """Part ``text[start:end]`` of a source to duplicate; ``kind`` (condition, value, ...) determines the form of the
-    copy."""
+    """Part ``text[start:end]`` of a source to duplicate; ``kind`` determines the form of the copy."""
 
     start: int
     end: int
@@ -44,8 +43,8 @@ class _Place:
 
 
 def switched(text: str, numbered: dict[int, Mutant]) -> tuple[str, dict[int, tuple[int, int]]]:
-    """Return a source with these mutants included; also the first and last line of the mutated statement by mutant.
-    Line numbers do not change. Mutants that cannot be included are omitted."""
+    """Return a source that includes mutants, and the first and last line of each included mutant's statement. Line
+    numbers do not change."""
     code, bare = blanked(text), blanked(text, strings=False)
     taken: list[tuple[_Place, int, Mutant]] = []
     for number, mutant in sorted(numbered.items(), key=lambda item: item[1]):

@@ -164,8 +164,8 @@ class Joiner:
         self.made.add(kind, self.name("fit"), nodes=[new, old], axis=axis, **self.along(kind))
 
     def _may_detach(self, bar: str, side: int) -> bool:
-        """Return whether an end of a bar may move to a new node. Another bar must remain at the old node, which may not
-        belong to a joint. Of two bars with a spring or latch between them, one must keep their common node."""
+        """Return whether a bar's end may move to a new node. Another bar must remain at the old node, which may not
+        belong to a joint. Of two bars coupled by a spring or latch, one must keep their common node."""
         node = self.made.bars[bar].ends[side]
         stays = len(self.made.at(node)) > 1 or node in self.made.fixed
         return (stays and "_of_" not in node and (bar, node) not in self.carriers

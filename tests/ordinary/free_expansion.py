@@ -225,9 +225,8 @@ def _strains(one: Truss, path: Any) -> np.ndarray:
 
 
 def _over_rounding(one: Truss, path: Any) -> dict[str, float]:
-    """Return errors over their allowed rounding: of forces, lengths, jump, and displacement under uniform expansion.
-    Errors of forces are relative to the force of a bar of fixed length, those of the jump to the expansion of the
-    truss."""
+    """Return, over their rounding errors: forces, lengths, jump, and displacement under uniform expansion. Forces are
+    relative to that of a bar of fixed length, the jump to the expansion of the truss."""
     states, links, places = path.states, path.truss.links, path.truss.nodes.position_m
     force_N, length_m = _allowed(one, path)
     # From lengths to displacements, the equilibrium matrix enters once more.

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decides without the engine whether a structure has a quasi-static path. Displacements are small; only numpy and scipy
-are used.
+"""Decides without the engine, for small displacements, whether a structure has a quasi-static path.
 
 Three checks decide; each is based on a theorem.
 

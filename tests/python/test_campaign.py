@@ -421,8 +421,7 @@ def test_outcomes_are_what_kinds_say_before_any_run(cases: Path) -> None:
 
 
 def test_failures_are_counted_by_their_fields() -> None:
-    """Two failures of the same type differ only in their numbers and are counted as one; limits of a range are not
-    replaced."""
+    """Failures that differ only in their numbers are counted as one; limits of a range are not such numbers."""
     first, second = (
         sj.errors.FailedRun("the run failed", cause="it buckles", time_s=time_s, temperature_change_K=10 * time_s)
         for time_s in (0.25, 0.5)

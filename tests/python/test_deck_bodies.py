@@ -107,7 +107,7 @@ def test_nodes_at_one_place_become_one(name: str, cards: str, tmp_path: Path) ->
 
 
 def test_springs_masses_and_supports_move_with_their_node(tmp_path: Path) -> None:
-    """After the merge, a spring of 1e6 N/m along y carries 1000 N. Along x node 3 is held, so only the rod at node 4
+    """The merged node has a spring of 1e6 N/m along y, which carries 1000 N. Node 3 is held along x, so one rod
     elongates."""
     cards = "SPC1,1,1,3\nCELAS2,8,1.+6,3,2\nFORCE,5,3,,1000.,0.,1.,0.\nCONM2,2,3,,4.\nCONM2,1,2,,3.\n"
     document = made(tmp_path, HEAD + RODS + END + cards + "RBAR,9,2,3,123456\n")
@@ -147,8 +147,7 @@ def test_an_equation_of_one_displacement_is_a_support(tmp_path: Path) -> None:
 ])
 def test_equations_between_nodes_at_which_bars_end_are_constraints(name: str, cards: str, moves: float,
                                                                    tmp_path: Path) -> None:
-    """The first rod ends at node 2, the second rod at node 3 with 7000 N. The equation couples the nodes: each rod
-    elongates by 1 mm under 7000 N."""
+    """The first rod ends at node 2, the second pulls node 3 with 7000 N, which elongates each rod by 1 mm."""
     document = made(tmp_path, HEAD + RODS + END + cards)
     assert document["constraint"]
     assert moved(document, "N4")[0] == pytest.approx(moves, rel=1e-9)
@@ -356,8 +355,8 @@ def test_an_amplitude_of_one_value_is_known_in_every_step(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("shape, factor", [("RECT", 1.0), ("CIRC", pi / 4)])
 def test_sizes_of_nodes_make_a_taper(shape: str, factor: float, tmp_path: Path) -> None:
-    """A section tapers from 10 x 20 to 20 x 10 mm: the integral of dx / ((1 + x) (2 - x)) for its flexibility is 2 ln 2
-    / 3."""
+    """A section tapers from 10 x 20 to 20 x 10 mm: its flexibility has the integral of dx / ((1 + x) (2 - x)), 2 ln 2 /
+    3."""
     text = INP.replace("2, 3, 4\n*MAT", "2, 2, 4\n*MAT").replace("TYPE=T3D2", "TYPE=B31").replace(
         "*SOLID SECTION, ELSET=BARS, MATERIAL=AL\n1.E-4",
         f"*DENSITY\n2700.\n*BEAM SECTION, ELSET=BARS, MATERIAL=AL, SECTION={shape}, NODAL THICKNESS\n1., 1.\n"

@@ -40,8 +40,7 @@ def is_refusal_of_deck(node: ast.Call) -> bool:
 
 
 def given() -> Iterator[tuple[str, str, set[str], bool]]:
-    """Yield position in the source, code and fields of every error in the package; also whether it may have further
-    fields."""
+    """Yield position, code and fields of every error in the package, and whether it may have further fields."""
     for path, tree in TREES:
         for node in ast.walk(tree):
             if isinstance(node, ast.Call):

@@ -156,8 +156,8 @@ def test_files_that_are_not_right(tmp_path: Path, wrong: str) -> None:
 
 
 def test_a_data_set_that_was_never_written_has_its_fill_value(tmp_path: Path) -> None:
-    """HDF5 allocates no storage for an unwritten data set. This is valid: Siconos writes such solutions. A data set of
-    excessive size is still refused."""
+    """HDF5 allocates no storage for an unwritten data set; Siconos writes such solutions. An excessive size is still
+    refused."""
     problem = pressed()
 
     def made(file: Any, size: int) -> None:

@@ -117,8 +117,7 @@ def test_a_play_that_is_not_empty_is_wider_than_an_empty_one() -> None:
 
 @pytest.mark.parametrize("fresh", [True, False])
 def test_partial_slip_is_that_of_the_kernel(fresh: bool) -> None:
-    """The kernel's load history and Masing's rule share no code. The displacement path has nested loops and closes
-    them."""
+    """The kernel's load history and Masing's rule share no code; the path has closed nested loops."""
     contact = dict(effective_young_modulus_Pa=38.5e9, effective_shear_modulus_Pa=7.9e9, effective_radius_m=0.01,
                    friction_coefficient=0.3)
     corners = 1e-7 * np.array([0, 3, -1, 2, -1, 2, -2, 4, -5, 5, 0, 7, -7])  # gross slip from 5.7 on
@@ -134,8 +133,8 @@ def test_partial_slip_is_that_of_the_kernel(fresh: bool) -> None:
 
 
 def test_iwan_joint_is_a_sum_of_its_sliders() -> None:
-    """An Iwan joint is summed from sliders at 4000 midpoints of its density. The error of the sum is of order 1/4000²;
-    at the end of the density it is larger."""
+    """Sliders of equal stiffness at 4000 midpoints of the Iwan density, and one slider at its end. The error of their
+    sum is of order 1/4000²."""
     friction, stiffness, chi, beta = 300.0, 1e6, -0.5, 1.0
     last = friction * (1 + beta) / (stiffness * (beta + (chi + 1) / (chi + 2)))
     share = ((np.arange(4000) + 0.5) / 4000) ** (1 / (chi + 1))  # equal stiffness each
@@ -220,8 +219,7 @@ def test_growing_and_shrinking_cycles_are_used_whole(amplitude: np.ndarray) -> N
 
 
 def test_no_joint_fits_worse_than_one_that_it_contains() -> None:
-    """A stiff joint slips nearly all the time. A fit that starts with stops would not remove them, so it also starts
-    from the fits of simpler joints."""
+    """A stiff joint slips nearly all the time; a search that starts with stops would not remove them by itself."""
     fits = Fits(read_loop(measured("coulomb", {"stiffness": 1e7, "friction": 100.0, "preload": 0.0}), "fresh"))
     for model in MODELS.values():
         for part in parts_of(model.name):

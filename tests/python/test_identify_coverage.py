@@ -14,9 +14,9 @@ from statejump.identification.models import MODELS
 
 
 def test_intervals_cover() -> None:
-    """20 repetitions of six intervals at 95 %: 114 of 120 are expected to contain the true value, sd 2.4 (4 with
-    correlation). Intervals of half the width would contain 81. docs/validation/identification.md has 500 repetitions of
-    each joint."""
+    """20 repetitions of six intervals at 95 %: 114 of 120 should contain the true value, sd 2.4 (4 with correlation).
+    Intervals of half the width would contain 81. docs/validation/identification.md has 500 repetitions of each joint.
+    """
     inside = 0
     for seed in range(20):
         found = sj.identify(measured("coulomb_clearance_spring", JOINT, seed=seed), start="cycled",
@@ -33,9 +33,8 @@ def correlated(count: int, correlation: float, seed: int) -> np.ndarray:
 
 
 def test_intervals_cover_with_correlated_noise() -> None:
-    """20 repetitions of four intervals at 95 %: 76 of 80 are expected to contain the true value, sd 2. If 600 rows with
-    a noise correlation of 0.9 counted as independent, intervals would be a fourth as wide and only half would contain
-    it."""
+    """20 repetitions of four intervals at 95 %: 76 of 80 should contain the true value, sd 2. If 600 rows with a noise
+    correlation of 0.9 counted as independent, intervals would be a fourth as wide and contain half of the values."""
     path = 1e-3 * np.sin(np.linspace(0, 8 * np.pi, 600))
     joint = {name: JOINT[name] for name in MODELS["coulomb_play"].parameters}
     loop = read_loop({"displacement_m": path, "force_N": path}, "cycled")

@@ -102,7 +102,7 @@ def test_hertz(name: str, radius: float) -> None:
 
 @pytest.mark.parametrize("name, shift", [("johnson", -1.0), ("esdu_78035", 1.0)])
 def test_logarithmic_line_contact(name: str, shift: float) -> None:
-    """The laws compute force from depth, the literature gives depth from force; the test inserts one into the other."""
+    """The laws compute force from depth; the formula of the literature gives depth from force."""
     limit = _engine.largest_depth_m(name, R1, R2)
     assert limit == pytest.approx(4 * CLEARANCE * np.exp(shift - 1), rel=1e-12)
     depth = np.geomspace(1e-9, limit * (1 - 1e-6), 50)
@@ -162,8 +162,7 @@ def test_wrong_use() -> None:
     ("flores", 1.6 * 0.2 / 0.8),
 ])
 def test_impact(name: str, ratio: float) -> None:
-    """For any elastic law restitution e' follows from a - ln(1 + a) = -a e' - ln(1 - a e'), where a is chi/K times the
-    speed."""
+    """For any elastic law e' solves a - ln(1 + a) = -a e' - ln(1 - a e'), where a is chi/K times the speed."""
     joint = curves.paper_joint()
     assert _engine.damping_ratio_s_per_m(name, 0.8, 0.1) * 0.1 == pytest.approx(ratio, rel=1e-14)
     found = curves.impact(name, joint)

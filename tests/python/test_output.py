@@ -121,8 +121,7 @@ def test_a_folder_in_the_place_of_a_file(tmp_path: Path) -> None:
 
 
 def test_a_kill_between_two_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next run in the folder completes files whose publication has begun, and removes all other unfinished files.
-    """
+    """The next run in the folder completes files whose publication has begun, and removes other unfinished files."""
     moved = os.replace
     case = tmp_path / "case"
 
@@ -234,8 +233,7 @@ def test_read_only_folder(bound, statejump, cases: Path, tmp_path: Path) -> None
 
 
 def test_what_may_not_be_read(bound, cases: Path, tmp_path: Path) -> None:
-    """Input files without read permission, and files in a folder without search permission, are each reported in one
-    line."""
+    """Unreadable files, and files in a folder that may not be searched, are each reported in one line."""
     (tmp_path / "case.toml").write_text((cases / "table1.toml").read_text())
     (tmp_path / "case.toml").chmod(0)
     (tmp_path / "locked").mkdir(mode=0)

@@ -207,8 +207,7 @@ def test_yade_gets_the_return() -> None:
 
 
 def test_table_of_zeros(statejump, edited, tmp_path: Path) -> None:
-    """With zero temperature change both models report zero and pass the comparison; 'fe' refuses the case with a
-    message."""
+    """With zero temperature change both models report zero and pass the comparison; 'fe' refuses the case."""
     program = ('shape = "half_sine"', 'shape = "table"\ntable_time_s = [0, 0.1, 0.2]\ntable_temperature_change_K = [0, 0, 0]')
     lines = [line for line in edited(program).read_text().splitlines()
              if not line.startswith(("temperature_change_max_K", "period_s"))]

@@ -43,7 +43,7 @@ def retyped(file: h5py.File, place: str) -> None:
 
 
 def spoiled(whole: Path, path: Path) -> Iterator[str]:
-    """Write a file once for every part, with this part removed or retyped; yield a description of each change."""
+    """Write a file once per part, with this part removed or retyped; yield a description of each change."""
     content, places = whole.read_bytes(), list[str]()
     with h5py.File(whole) as file:
         file.visit(places.append)

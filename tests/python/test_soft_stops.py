@@ -190,8 +190,8 @@ def test_stiff_stop_is_the_rigid_one() -> None:
 
 @pytest.mark.parametrize("sticking", ["rigid", "elastic"])
 def test_soft_stops_of_a_truss_are_those_of_the_closed_form(sticking: str) -> None:
-    """With rigid sticking the truss equals the closed form. With elastic sticking it differs by the pad's displacement,
-    30 N over its stiffness k_t, 2e-6 m."""
+    """With rigid sticking the truss equals the closed form; with elastic sticking the pad yields by 30 N over k_t, 2e-6
+    m."""
     times, slide, force = states(truss({"sticking": sticking}, clearance_minus_m=MINUS, clearance_plus_m=PLUS,
                                        stop_stiffness_N_per_m=STOP))
     exact = spring_slider(stop_stiffness_N_per_m=STOP).reduced().at(times)
@@ -315,8 +315,7 @@ def test_motion_begins_at_rest(scheme: str, keys: dict[str, float]) -> None:
 
 @pytest.mark.parametrize("model", ["coulomb_soft_stops", "coulomb_play"])
 def test_identified_joint_goes_into_a_case(model: str) -> None:
-    """The section identified from the loop of a slider describes this slider, within the confidence interval of the
-    noise."""
+    """The section identified from the loop of a slider is that slider, within the interval of the noise."""
     true = {"coulomb_soft_stops": {"clearance_minus_m": MINUS, "clearance_plus_m": PLUS, "stop_stiffness_N_per_m": STOP},
             "coulomb_play": {"play_m": 4e-4}}[model]
     own = {key.removesuffix("_N_per_m").removesuffix("_m"): value for key, value in true.items()}

@@ -43,7 +43,7 @@ def undamped():
 
 
 def test_spring_slider_by_hand(undamped) -> None:
-    """Contact with the floor at twice its 100 N, with R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84: contact radius a,
+    """The floor contact carries twice its 100 N: R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84 give contact radius a and
     stiffnesses 2 E* a and 8 G* a. The bar has 1.26e6 N/m."""
     modulus, shear = 70e9 / (2 * 0.91), 70e9 / (4 * 1.7 * 1.3)
     width = (200 * 0.05 / (4 / 3 * modulus)) ** (1 / 3)

@@ -33,7 +33,7 @@ def as_spring_slider(start: str, **changes: Any) -> sj.Case:
 
 
 def as_truss(start: str, preload_N: float = PRELOAD_N, **changes: Any) -> sj.Case:
-    """Return the bar of the spring-slider as a truss; the preload spring is parallel to the bar."""
+    """Return the same bar as a truss; the preload spring is parallel to the bar."""
     document = {
         "case": {"name": "bar", "kind": "truss", "title": "Bar on a slider", "source": "test"},
         "truss": {"dimension": 2},

@@ -88,8 +88,8 @@ def test_profile_of_a_bore() -> None:
 
 
 def test_can_of_a_cylinder() -> None:
-    """The rest set on the mesh of a closed cylinder is compared with the closed form. The set lies on the curved
-    surface; the rims are corners and do not belong to it."""
+    """The rest set on the mesh of a closed cylinder equals the closed form on the curved surface; rims are corners and
+    do not belong to it."""
     mesh = can_mesh(C, 2e-4)
     exact = _engine.rest_in_bore(C, 2e-4, [(3, 4, 1)], 0.4)["any"]
     found = _engine.rest_on_mesh(mesh, [(3, 4, 1)], 0.4)["any"]

@@ -133,8 +133,7 @@ def test_few_nodes_determine_few_terms() -> None:
 
 
 def test_repeatability_is_a_quantile_with_an_honest_interval() -> None:
-    """Changes are uniform up to 1 µm over 2 m, so the 99 % quantile is 0.495 µm/m. With too few samples the interval
-    has no upper end."""
+    """Changes are uniform up to 1 µm over 2 m: their 99 % quantile is 0.495 µm/m. Too few samples give no upper end."""
     drawn = np.random.default_rng(1).uniform(-1e-6, 1e-6, 20000)
     found = sj.surface.repeatability(drawn, 2.0)
     assert found.low < 0.495 < found.high and found.high - found.low < 5e-3

@@ -45,8 +45,7 @@ def histories(count: int) -> np.ndarray:
 
 @pytest.fixture
 def chain(tmp_path: Path) -> tuple[Path, list[str], np.ndarray]:
-    """A chain whose links have individual temperatures; also the temperature file, the link names, the temperatures
-    [K]."""
+    """A chain whose links have individual temperatures, its temperature file, link names and temperatures [K]."""
     data = document("trusses/chain_10", members_file="members.csv", reference_temperature_K=REFERENCE_K)
     names = [link["name"] for link in data["link"]]
     given = histories(len(names))
@@ -183,8 +182,7 @@ def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, lis
     (["2026-03-01T00:00:00", "2026-03-01T00:30:00", "2026-03-01T01:15:00", "2026-03-01T03:30:00", "2026-03-01T05:00:00"],
      "time")])
 def test_hours_dates_and_degrees(times: list[str], unit: str, chain: tuple[Path, list[str], np.ndarray]) -> None:
-    """Times and numbers are in the format of a German spreadsheet. Degrees Celsius need the reference temperature,
-    which is given."""
+    """The format is that of a German spreadsheet. Degrees Celsius need the reference temperature, which is given."""
     path, names, given = chain
     rows = [";".join([time, *(f"{value - 273.15:.4f}".replace(".", ",") for value in row)]) for time, row in zip(times, given)]
     path.with_name("members.csv").write_text("\r\n".join(

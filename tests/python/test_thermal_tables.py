@@ -37,8 +37,8 @@ def test_times_of_a_table_are_the_times(name: str) -> None:
 
 
 def test_length_of_the_cycle_matters() -> None:
-    """The damped rib returns to different positions after cycles of 10 s and of 1 s. An earlier version compressed the
-    table to another period, which was physically wrong."""
+    """The damped rib returns to different positions after cycles of 10 s and of 1 s; scaling a table to another period
+    was wrong physics."""
     case = sj.load("cases/umbrella_damped.toml")
     slow = case.changed({**TABLE, "thermal.period_s": None}).reduced().summary["theta2_jump_rad"]
     fast = case.reduced().summary["theta2_jump_rad"]

@@ -25,8 +25,8 @@ PARTS = ("scheduler", "worker", "client")
 
 
 def certificates(folder: Path) -> Path:
-    """Make a certificate authority and a certificate for each process; return Dask's configuration as docs/security.md
-    has it."""
+    """Make a certificate authority and a certificate for each process; return Dask's configuration of docs/security.md.
+    """
     folder.mkdir()
 
     def openssl(*words: str) -> None:

@@ -91,8 +91,8 @@ def test_friction_forces_give_the_jump_back(mast: TrussPath) -> None:
 
 @pytest.mark.parametrize("name", ["ball_tripod", "latch_boom", "latch_lever", "telescope", "bolted"])
 def test_friction_of_every_type_of_joint_gives_the_jump_back(name: str) -> None:
-    """A truss without friction, under the forces that replace its friction, reaches the end of the path. This checks
-    forces, moments and signs."""
+    """A truss without friction, under the forces that replace it, reaches the end of the path: forces, moments, signs.
+    """
     case = sj.load(bolted()) if name == "bolted" else sj.load(f"trusses/{name}")
     path = quick_path(case.definition.resolve())
     shares = contributions(path, chosen_output(path, "node"))
@@ -131,8 +131,7 @@ def test_kink_whose_slopes_cancel_is_said() -> None:
 
 
 def moved_by(path: TrussPath, each: list[float], node: int = 0) -> TrussPath:
-    """A copy of the path in which one node moves by the given distances [m] along x over each cycle, and no other node
-    moves."""
+    """A copy of the path in which only one node moves, by the given distances [m] along x over each cycle."""
     moved = np.zeros((len(each) + 1, len(path.truss.nodes.names), 3))
     moved[1:, node, 0] = np.cumsum(each)
     still = {key: np.zeros((len(each) + 1, 1)) for key in path.cycle_ends if key.endswith("_dissipation_J")}
@@ -170,8 +169,7 @@ def test_verdicts(mast: TrussPath) -> None:
 
 
 def test_growth_is_told_only_if_it_survives_smaller_increments(mast: TrussPath) -> None:
-    """Growth of 0.038 nm per cycle that vanishes with more increments is not reported. Growth of 0.02 nm that remains
-    is reported, whatever part vanishes."""
+    """Growth of 0.038 nm per cycle that vanishes with more increments is not reported; lasting growth of 0.02 nm is."""
     once = [1e-6, 0.0, 0.0]
 
     def falling(order: float) -> Callable[[int], float]:

@@ -91,8 +91,8 @@ def test_no_dem_campaign(campaign: Callable[..., Plan]) -> None:
 
 
 def test_half_a_campaign_resumed(tmp_path: Path, campaign: Callable[..., Plan]) -> None:
-    """A journal with half of the samples and an incomplete last line, as after a kill, is resumed. The result has the
-    same bytes as that of an uninterrupted campaign."""
+    """A journal with half of the samples and an incomplete last line, as after a kill, is resumed: the result has the
+    same bytes as without interruption."""
     trial = campaign(FRICTION, ONE)
 
     def finish(folder: Path) -> tuple[bytes, bytes]:

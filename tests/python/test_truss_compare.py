@@ -70,8 +70,8 @@ def test_chain_jumps_as_the_closed_form_and_does_not_drift(statejump, tmp_path: 
 
 
 def test_cable_goes_taut_and_slack_as_on_the_path(statejump, tmp_path: Path) -> None:
-    """The cable is slack at the ends of the cycle and taut in between. It holds back the heated chain, but the jump is
-    that of the chain without a cable."""
+    """The cable is slack at the ends of the cycle and taut in between. It restrains the hot chain but does not change
+    the jump."""
     n, friction, stiffness, free_m = 3, 100.0, 2e5, 1.501
     made = generate.chain(n, friction_force_N=friction, period_s=0.5)
     made["spring"] = [{"name": "tie", "nodes": ["N0", "N3"], "stiffness_N_per_m": stiffness, "free_length_m": free_m,
@@ -101,8 +101,8 @@ def test_cable_goes_taut_and_slack_as_on_the_path(statejump, tmp_path: Path) -> 
 
 
 def test_ring_with_joints_that_stick_elastically_jumps_as_in_the_dem(statejump, tmp_path: Path) -> None:
-    """Elastic slips are about f/k_t, micrometres. Rigid sticking gives other final positions of joints: they differ by
-    a fifth of the loop."""
+    """Elastic slips are about f/k_t, micrometres. With rigid sticking, final positions differ by a fifth of the loop.
+    """
     made = generate.ring(6, sticking="elastic")
     outcome = statejump("compare", case_file(tmp_path, made))
     assert outcome.status == 0, outcome.output + outcome.errors

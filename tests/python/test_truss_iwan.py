@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Iwan joints in cases, drawings and commands. The section that identification writes is valid in a case, and
-identifying the computed loop gives the same joint."""
+"""Iwan joints in cases, drawings and commands. Identification writes a section valid in a case, and identifies its loop
+again."""
 from __future__ import annotations
 
 import tomllib

@@ -22,8 +22,7 @@ LOAD_N = [340.0, -810.0]
 
 
 def frame(**more: Any) -> dict[str, Any]:
-    """Three planar bars, one more than needed, under a load that is not a round number, so that rounding errors occur.
-    """
+    """Three planar bars, one more than needed, under a load that is no round number, to cause rounding."""
     nodes = [("A", [0.0, 0.0]), ("B", [0.9, 0.07]), ("C", [1.63, -0.11])]
     return {
         "case": {"name": "frame", "kind": "truss"}, "truss": {"dimension": 2},

@@ -34,8 +34,8 @@ def failed(document: dict[str, Any]) -> StatejumpError:
 
 
 def bays(count: int, diagonals: int, dimension: int) -> dict[str, Any]:
-    """Square bays in a row on two supports. With one diagonal a bay is statically determinate, with two it is not. In
-    space the truss has three rows of nodes."""
+    """Square bays in a row on two supports: statically determinate with one diagonal per bay, not with two. In space
+    there are three rows of nodes."""
     rows = [(0.0, 0.0), (0.0, 1.0)] if dimension == 2 else [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
     fixed = [["x", "y"], ["x"]] if dimension == 2 else [["x", "y", "z"], ["x", "z"], ["x"]]
     nodes, links = [], []

@@ -68,9 +68,8 @@ def test_chain_jumps_as_the_closed_form(n: int, kind: str) -> None:
 
 
 def iwan_platform_m(truss: ResolvedTruss, changes_K: np.ndarray) -> np.ndarray:
-    """Displacement of the platform of the Iwan stack [m]. Each block is a stop operator of this displacement; the force
-    of the heated drive balances the sum of the blocks. The equation is piecewise linear and solved between its corners.
-    """
+    """Displacement of the platform of the Iwan stack [m]. Each block is a stop operator of it, and the force of the
+    heated drive balances their sum; this piecewise linear equation is solved between its corners."""
     links = truss.links
     rigidity = links.young_modulus_Pa * links.cross_section_area_m2
     length, expansion = links.stress_free_length_m[0], links.thermal_expansion_per_K[0]
@@ -184,9 +183,9 @@ def test_blocks_that_come_to_rest_smoothly_do_not_stall_the_path() -> None:
 
 
 def test_joints_that_slip_one_after_another_within_an_increment_cost_no_further_steps() -> None:
-    """Without event detection an increment takes a step or two, however many joints change their status in it. The
-    start and two branches, each with a short first step and ten increments, take 23 solves; 900 separate changes would
-    take hundreds."""
+    """Without event detection an increment takes a step or two, however many joints change status. The start and two
+    branches, each with a short first step and ten increments, take 23 solves; 900 separate changes would take hundreds.
+    """
     document = generate.umbrella(300, cable_preload_N=1.0)
     scatter = np.random.default_rng(1)
     for joint in document["revolute"]:
@@ -198,9 +197,8 @@ def test_joints_that_slip_one_after_another_within_an_increment_cost_no_further_
 
 @pytest.mark.parametrize("bays", [20, 40])
 def test_tall_masts_pass_with_every_event_located(bays: int) -> None:
-    """Both joints of a level near the top slide at once. Rounding can make the force of one look like that of a
-    sticking joint. If this joint were left sticking, the next step would start beyond its friction limit, and its
-    status would alternate."""
+    """Both joints of a level near the top slide at once. Rounding can make one look sticking; left so, it would start
+    the next step beyond its friction limit, and its status would alternate."""
     located, quick = (path(generate.mast(bays), locate_events=locate) for locate in (True, False))
     assert located.complete
     # Events of the quick path happen somewhere in increments of 1/50 of a branch.
@@ -302,7 +300,7 @@ def test_column_under_a_load_buckles_at_the_closed_form() -> None:
 
 
 def test_heated_column_buckles_at_its_temperature() -> None:
-    """The buckling temperature follows from the force between fixed ends, N = E A alpha dT / (1 + alpha dT)."""
+    """The force between fixed ends is N = E A alpha dT / (1 + alpha dT)."""
     critical_K = 500 / (7e6 - 500) / 1e-5
     path(column(0.0, critical_K * (1 - NEAR_BUCKLING)))
     highest_K = critical_K * (1 + NEAR_BUCKLING)
@@ -312,7 +310,7 @@ def test_heated_column_buckles_at_its_temperature() -> None:
 def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
     """A ring on an elastic bed of stiffness k per bay buckles at the hoop force 2 sqrt(k / bay E I). The generator's
     spokes make this four times the actual hoop force H, so a sixteenth of k removes the margin. Shear of the bays, H
-    over 1.2 MN of a diagonal, lowers the buckling force by 2 % of H, which corresponds to 4 % of k."""
+    over 1.2 MN of a diagonal, lowers the buckling force by 2 % of H, or 4 % of k."""
     bays, hoop_force_N = 1000, 25e3  # high, so that buckling and not the strain of the spokes chooses k
 
     def ring(softer: float) -> dict[str, Any]:
@@ -332,9 +330,9 @@ def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
 @pytest.mark.parametrize("bays", [3, 5, 12, 50])
 @pytest.mark.parametrize("change_K", [0.1, 100.0])
 def test_generated_rings_start_in_contact_at_the_drawn_shape(bays: int, change_K: float) -> None:
-    """Link lengths are chosen so that the loaded ring with closed clearances has the reference configuration. Every
-    joint then carries half of the hoop force. The remaining error is the Hertz depth, below 6 um up to 4 kN: it reduces
-    the force by at most E A depth / bay, 84 N."""
+    """Link lengths are chosen so that the loaded ring with closed clearances has the reference configuration; every
+    joint carries half of the hoop force. The Hertz depth remains as an error, below 6 um up to 4 kN: it reduces the
+    force by at most E A depth / bay, 84 N."""
     found = path(generate.ring(bays, temperature_change_K=change_K), increments_per_branch=1, locate_events=False)
     outer = 0.25 / np.sin(np.pi / bays)
     hoop_force_N = max(1000.0, 7e6 * 23.4e-6 * change_K * min(0.25, outer / 2) / outer)
@@ -414,7 +412,7 @@ OPEN = 5  # of the engine's statuses
 
 
 def load_N(sag_m: float, change_K: float = 0.0) -> float:
-    """Load on the common end of the two bars that displaces it by this distance below its reference position [N]."""
+    """Load that displaces the common end of both bars by this distance below its reference position [N]."""
     drawn, now, height = np.hypot(0.5, 0.5), np.hypot(0.5, 0.5 + sag_m), 0.5 + sag_m
     free = drawn * (1 + EXPANSION * change_K)
     return float(2 * 70e9 * AREA_M2 * (now / free - 1) * height / now)
@@ -480,10 +478,9 @@ def wandering_mast() -> dict[str, Any]:
 
 @pytest.mark.parametrize("blocks", [0, 3000])
 def test_many_joints_that_wander_are_settled_on_few_factorizations(blocks: int) -> None:
-    """For the latches of the mast, active-set changes of many joints at once cycle, and changes of single joints take
-    one factorization each (37 per solve). When changes cycle, the step is halved. Beside the mast, blocks on separate
-    bars slip at once and permanently; they do not affect this. (It was 43 factorizations per solve when every joint
-    that had ever changed counted as cycling.)"""
+    """Changes of many latches at once cycle on this mast, single changes take a factorization each (37 per solve). When
+    changes cycle, the step is halved. Blocks on separate bars, which slip at once and permanently, do not affect this
+    (43 per solve when every joint that had ever changed counted as cycling)."""
     mast = wandering_mast()
     for i in range(blocks):
         place = [0.0, -10.0 - i, 0.0]
@@ -499,8 +496,8 @@ def test_many_joints_that_wander_are_settled_on_few_factorizations(blocks: int) 
 
 
 def test_pivots_that_lead_on_are_left_alone() -> None:
-    """A chain of elastic blocks has as many unsuccessful active-set changes as a mast whose changes cycle, but each
-    change approaches the solution (288 factorizations)."""
+    """A chain of elastic blocks has as many unsuccessful active-set changes as a mast whose changes cycle, but each one
+    approaches the solution (288 factorizations)."""
     chain = path(sticking(generate.chain(200, cycles=2), "elastic"), increments_per_branch=1, locate_events=False)
     assert chain.factorizations < 400
 

@@ -32,7 +32,7 @@ REFUSED = (f"YADE is missing: {WITHOUT_YADE}; for 'dem' and 'compare' build with
 
 @pytest.fixture(autouse=True)
 def skipped_without_yade(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Override the fixture that skips tests without YADE: these tests need no YADE to test commands that do."""
+    """Override the fixture that skips tests without YADE; these tests need no YADE."""
     monkeypatch.setattr(_paths, "YADE", "")
 
 

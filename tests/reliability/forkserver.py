@@ -79,8 +79,8 @@ class Forkserver:
         """Run the command.
 
         :param folder: working folder of the run
-        :param more: environment variables in addition to those of the server
-        :param kill_after_s: time [s] after which the process group of the run is killed
+        :param more: environment variables besides those of the server
+        :param kill_after_s: time after which the process group is killed [s]
         """
         pid = self._ask({"folder": str(folder), "words": list(words), "more": dict(more), "said": str(self._said)})
         if kill_after_s is not None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Saves scenes and continues them, or loads and continues them; restarts.py starts this script in YADE:
-``restart_scenes.py write|read PLAN``.
+"""Saves and continues scenes, or loads and continues them; restarts.py runs ``restart_scenes.py write|read PLAN`` in
+YADE.
 
-PLAN is a JSON file with the keys ``steps`` (number of steps after saving or loading) and ``saves``. Each save has case,
-law, ``first`` (number of steps before saving) and file.
+PLAN is a JSON file: ``steps`` to run after saving or loading, and ``saves``, each with case, law, ``first`` (steps
+before saving) and file.
 """
 import hashlib
 import json

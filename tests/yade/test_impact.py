@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Impact of two free balls: Hertz's law, conservation of momentum, published impacts of spheres; the example script.
+"""Impact of two free balls: Hertz's law, momentum, published impacts of spheres; the example script.
 
 Published values are read from figures of Chung and Ooi, Granul. Matter 13, 2011, to about one per cent of full scale.
 """

@@ -81,7 +81,7 @@ class Programs:
 
 
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
-    """Build the scene; its initial state is the first equilibrium of the quasi-static path.
+    """Build the scene in the initial equilibrium of the quasi-static path.
 
     :param case: result of ``statejump.kinds.truss.dem.resolved``
     :param recorders: engines that read the state, run before the motion of each step
@@ -183,8 +183,7 @@ def watched(built: TrussScene) -> Watched:
 
 
 def sample(case: dict[str, Any], built: TrussScene, states: States) -> list[np.ndarray]:
-    """Return the columns of all samples, see :func:`columns`; groups of columns are arrays with two axes (sample,
-    item)."""
+    """Return the columns of all samples, see :func:`columns`; groups of columns are arrays (sample, item)."""
     faults = [*_strangers(case, built, states), *(fault for joints in built.joints for fault in joints.faults(states))]
     if faults:
         raise min(faults, key=lambda fault: fault.time_s)

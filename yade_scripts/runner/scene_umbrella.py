@@ -134,8 +134,7 @@ def watched(built: UmbrellaScene) -> Watched:
 
 
 def sample(case: dict[str, Any], built: UmbrellaScene, states: States) -> list[np.ndarray]:
-    """Return the columns of the samples. Forces act on the journal; the tangential force is positive along (-n_y, n_x).
-    """
+    """Return the columns: forces on the journal, with the tangential force positive along (-n_y, n_x)."""
     tips = (built.bearing, built.journal)
     bearing, journal = states.bodies(tips).T
     (contact,), (link,) = states.contacts([(built.journal, built.bearing)]).T, states.links([built.link_ab]).T

@@ -23,8 +23,7 @@ class FirstContact:
 
 @dataclass(frozen=True)
 class Envelope:
-    """Range of θ2 over all runs of one kind, compared with the range that the clearance allows at the same temperature.
-    """
+    """Range of θ2 over all runs of one kind, and the range that the clearance allows at the same temperature."""
 
     runs: str
     count: int

@@ -29,8 +29,7 @@ class Claim:
 
 
 def jump_verdict(f: Findings, least_m: float) -> str:
-    """Return the verdict on "a state jump occurs", from the fraction of runs that end more than ``least_m`` from their
-    start."""
+    """Return the verdict on "a state jump occurs": how many runs end more than ``least_m`` [m] from their start."""
     share = float(np.mean(np.concatenate([f.end_shift_reduced_m, f.end_shift_dem_m]) > least_m))
     return HOLDS if share == 1 else IN_THE_MEAN if share > 0.5 else FAILS
 

@@ -36,8 +36,7 @@ def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) ->
 
 
 def closed_form_first_contact(case: UmbrellaCase) -> float | None:
-    """Return ΔT [K] of first contact for links without initial vibration; None: no closed form; infinity: no contact.
-    """
+    """Return ΔT [K] of first contact without initial vibration; None: no closed form; infinity: no contact."""
     return compare.closed_form_first_contact(with_values(case, {"start.mode": "matched"}))
 
 

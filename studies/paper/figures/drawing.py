@@ -152,8 +152,7 @@ def _mark_static(panel: Axes, places: np.ndarray, variants: Sequence[Variant]) -
 
 
 def _common_range(variants: Sequence[Variant]) -> tuple[float, float]:
-    """Return the common axis range of all deflections [rad] with a margin. Lines of the envelope may exceed this range.
-    """
+    """Return the common axis range of deflections [rad] with a margin; lines of the envelope may exceed it."""
     extremes = [
         (pick(v.ensemble.deflection_rad), *(pick(single_deflection(run)) for run in (v.reduced, v.dem)))
         for pick in (np.min, np.max) for v in variants

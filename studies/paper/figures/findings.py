@@ -102,8 +102,8 @@ def _amplification(case: UmbrellaCase, reduced: Run) -> Amplification:
 
 
 def _slack(case: UmbrellaCase, run: Run) -> float:
-    """Return the largest sum [m] of contact depth and elongation of both links: links assumed rigid seem to leave the
-    clearance by this distance."""
+    """Return the largest sum [m] of contact depth and elongation of both links, by which rigid links seem to leave the
+    clearance."""
     first, second = case.link_lengths_m(run["temperature_change_K"])
     return float(np.max(
         np.maximum(run["penetration_depth_m"], 0)

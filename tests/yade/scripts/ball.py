@@ -51,7 +51,7 @@ def planar(kind, name):
 
 
 def held(name, tangential):
-    """Report whether a ball sticks that is pressed into its socket with 100 N and loaded by a tangential force."""
+    """Return whether a ball, pressed into its socket with 100 N, sticks under a tangential force."""
     reset()
     metal = material()
     normal = Vector3(2, 3, 6) / 7

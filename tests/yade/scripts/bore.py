@@ -126,7 +126,7 @@ def too_close():
 
 
 def bulge():
-    """A small journal on the bump between lobes of a bore, and the errors that laws without this geometry report."""
+    """A small journal on the bump between lobes, and the errors of laws that do not support this geometry."""
     def pressed(law):
         reset()
         metal = material()

@@ -50,8 +50,8 @@ def in_one_go(steps):
 
 
 def recorded(pair=(1, 0)):
-    """Add a recorder of the scene that runs at steps other than multiples of the substeps. Contacts except that of the
-    given pair of bodies count as unexpected."""
+    """Add a recorder of the scene that runs at steps other than multiples of the substeps. Only the contact of the
+    given pair of bodies is expected."""
     parts = {name: [part for engine in O.engines for part in getattr(engine, name, [])]
              for name in ("links", "springs", "joints")}
     bodies = [number for number in (0, 1, 3, 4) if number < len(O.bodies)]
@@ -66,8 +66,8 @@ def rows():
 
 
 def run_both(build, steps, substeps, go=in_one_go, record=None):
-    """Run a scene with YADE's loop and with the JointStepper; return how many steps YADE's loop made in each, and what
-    differs between the results. ``record``: pair of bodies whose contact is recorded."""
+    """Run a scene with YADE's loop and with the JointStepper; return the steps that YADE's loop made in each, and what
+    differs. ``record``: pair of bodies whose contact is recorded."""
     found = {}
     for way in ("ordinary", "stepper"):
         build()
@@ -124,8 +124,7 @@ def erased(number):
 
 
 def error_of(build, steps=2000, substeps=100):
-    """Return what ends a run, with YADE's loop and with the JointStepper: class, text, step and time of the error, and
-    its fault."""
+    """Return class, text, step and time of the error that ends a run in either loop, and its fault."""
     found = []
     for way in ("ordinary", "stepper"):
         build()

@@ -27,8 +27,8 @@ def pair(blocked="XYZ", dt=1e-9, reader=None, **keywords):
 
 
 def loop(steps, amplitude, **keywords):
-    """Return force over displacement of a prismatic joint moved along its axis to the amplitude, to its opposite and
-    back, with a constant lateral displacement."""
+    """Move a prismatic joint along its axis to the amplitude, to its opposite and back, with a constant lateral offset;
+    return its forces."""
     aside = 1e-6
     ids, joint = pair(blocked="xyzXYZ", **keywords)
     rows = []

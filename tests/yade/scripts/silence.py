@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""NaN, infinite or otherwise invalid numbers, with YADE's loop and the JointStepper. Usage: `silence.py PART`; the end
-of this file lists the parts.
+"""NaN and other invalid numbers in YADE's loop and the JointStepper. `silence.py PART`; the end of this file lists
+parts.
 
 A change is made before the first step, between two runs, or by a PyRunner during a run, at its step 60.
 """
