@@ -130,7 +130,7 @@ def _displacements(run: object) -> np.ndarray:
 
 
 def _small(made: dict) -> dict[str, np.ndarray]:
-    """Return the displacements of a case by node, for loads times a small factor; they are divided by this factor."""
+    """Return the displacements by node for loads times a small factor, divided by this factor."""
     import statejump as sj
 
     factor = 1.0 if "expansion" in made else SMALL  # temperature-dependent coefficients are not linear

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a CalculiX deck as a linear analysis and compares its displacements with those of this project."""
+"""Runs a CalculiX deck as a linear analysis and compares its displacements with this project's."""
 from __future__ import annotations
 
 import re
@@ -55,7 +55,7 @@ def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Map
 
 
 def printing(text: str, step: int, nodes: list[int]) -> str:
-    """Return the deck without NLGEOM, ended after the given step, with that step's displacements as its only output."""
+    """Return the deck without NLGEOM, ended after a given step, with that step's displacements as output."""
     made: list[str] = []
     number, skips = 0, False
     for line in text.splitlines():

@@ -41,7 +41,7 @@ def corner(longeron: int, level: int) -> np.ndarray:
 
 
 def name(longeron: int, level: int) -> int:
-    """Return the number of the node of a longeron at a level: 203 is longeron 2, level 3."""
+    """Return the number of a node on a longeron: 203 is longeron 2, level 3."""
     return 100 * longeron + level
 
 

@@ -244,7 +244,7 @@ def shared(made: NotebookNode) -> NotebookNode:
 def with_outputs(made: NotebookNode, stored_file: Path) -> NotebookNode:
     """Return a notebook with the outputs of a stored notebook.
 
-    :raises SystemExit: the cells of the two notebooks differ
+    :raises SystemExit: their cells differ
     """
     kept = [cell for cell in nbformat.read(stored_file, as_version=4).cells if cell.cell_type == "code"]
     cells = [cell for cell in made.cells if cell.cell_type == "code"]

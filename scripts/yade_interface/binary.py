@@ -96,7 +96,7 @@ class Libraries:
         return None
 
     def allocated_size(self, class_name: str) -> int | None:
-        """Return the object size [bytes] that the function Create<Class> passes to operator new.
+        """Return the size [bytes] that Create<Class> passes to operator new.
 
         The size is the operand of the last ``mov edi, constant`` before the first call.
         """

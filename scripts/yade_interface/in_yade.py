@@ -56,7 +56,7 @@ def type_name(thing: int) -> str:
 
 
 def is_a(thing: int, class_name: str) -> bool:
-    """Return whether the object at an address is of the given class of YADE, and not of a derived class."""
+    """Return whether the object at an address is exactly of this class of YADE, not of a derived class."""
     return type_name(thing) == f"N4yade{len(class_name)}{class_name}E"
 
 
@@ -73,8 +73,8 @@ def demangled(names: list[str]) -> list[str]:
 
 
 def getters() -> tuple[list[list[Any]], int]:
-    """Return class, name, offset and type of every plain attribute of the examined classes; also the number of these
-    attributes."""
+    """Return class, name, offset and type of plain attributes of the examined classes; also the number in all classes.
+    """
     found, count = [], 0
     for class_name, python_class in sorted(vars(wrapper).items()):
         if not isinstance(python_class, type):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Counts processor instructions: of the checks of numbers in the DEM's inner loop, and of the start of a command.
+"""Counts instructions of the checks of numbers in the DEM's inner loop, and of the start of a command.
 
     cost_of_checks.py steps                        a step of the JointStepper with its checks and without them
     cost_of_checks.py start BEFORE AFTER           the start of the command in two builds (folders for PYTHONPATH)

@@ -52,8 +52,8 @@ COLUMNS = ("case", "model", "jump_m", "jump_node", "jump_difference_m", "rms_ove
 
 
 def peak_acceleration(run: Any) -> float:
-    """Return the largest acceleration of a node [m/s²]: the second difference of its displacement at the samples.
-    Changes shorter than two samples are lost in both models."""
+    """Return the largest acceleration of a node [m/s²], as second difference of the samples; shorter changes are lost
+    in both models."""
     moved, interval = run["displacement_m"], run.time_s[1] - run.time_s[0]
     return float(np.linalg.norm(moved[2:] - 2 * moved[1:-1] + moved[:-2], axis=2).max() / interval**2)
 

@@ -86,7 +86,7 @@ HEAD = ("newton off", f"neighbor {SEARCHED} bin", "neigh_modify delay 0 every 1 
 
 
 def pairs(size: int) -> list[tuple[int, float, float, float]]:
-    """Return pairs of a fixed and a free sphere, one pair at each position of a cubic grid, as bodies of a deck."""
+    """Return a pair of a fixed and a free sphere at each position of a cubic grid, as bodies of a deck."""
     offset = 2 * RADIUS - depth(RADIUS / 2)
     return [atom for x, y, z in places(size) for atom in ((1, x, y, z), (2, x + offset, y, z))]
 

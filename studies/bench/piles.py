@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random frictional contact problems of piles of rigid bodies, as in granular and masonry mechanics.
 
-Since the Delassus matrix is W = H M^-1 H^T and q = H v, the contact velocity u = 0 is possible, so a solution exists
-(Acary and Cadoux 2013). If contacts outnumber the degrees of freedom, W is rank-deficient.
+With W = H M^-1 H^T and q = H v, the contact velocity u = 0 is possible, so a solution exists (Acary and Cadoux 2013).
+If contacts outnumber the degrees of freedom, W is rank-deficient.
 """
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ class Pile:
         return h
 
     def problem(self, random: Random, kick: float) -> tuple[Problem, int]:
-        """Return the contact problem of one time step under gravity, and its number of degrees of freedom. Velocities
-        before the step are random with the size ``kick``."""
+        """Return the contact problem of a step under gravity, and its degrees of freedom. Velocities before the step
+        are random with the size ``kick``."""
         h = self.rows()
         masses = np.concatenate(self.masses)
         velocity = kick * random.normal(size=masses.size)

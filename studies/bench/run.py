@@ -110,7 +110,7 @@ def column(rows: list[dict[str, Any]], scene: str, size: int, key: str) -> list[
 def ratios(
     rows: list[dict[str, Any]], size: int, key: str, scenes: tuple[str, str] = (OURS, YADES)
 ) -> list[float]:
-    """Return the sorted ratios of the time of the first scene to that of the second, one per repetition."""
+    """Return the sorted ratios of the times of the first to the second scene, one per repetition."""
     first, second = (column(rows, scene, size, key) for scene in scenes)
     return sorted(a / b for a, b in zip(first, second))
 
@@ -181,7 +181,7 @@ def engine_table(build: Path, repetitions: int) -> str:
 
 
 def write(path: Path, text: str) -> None:
-    """Write through a temporary file that is renamed at the end, so that no incomplete file remains."""
+    """Write a temporary file and rename it, so that no incomplete file remains."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name("." + path.name + ".partial")
     partial.write_text(text)

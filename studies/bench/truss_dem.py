@@ -5,8 +5,8 @@ truss_dem.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss_dem.py
 
-The structures are chains of 100 to 10 000 blocks with friction, on one thread, with energy account. The cost is the
-difference of two runs of different length, so it excludes start and samples.
+Chains of 100 to 10 000 blocks with friction run on one thread, with energy account. The cost is the difference of two
+runs of different length, which excludes start and samples.
 """
 from __future__ import annotations
 

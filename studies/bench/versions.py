@@ -84,7 +84,7 @@ def ordinary(folder: Path, count: int) -> Iterator[Path]:
 
 
 def measured(versions: tuple[Version, Version], file: Path, repeat: int) -> dict[str, Any] | None:
-    """Return the median times of both versions; None if a version fails or exceeds the time limit."""
+    """Return the median times of both versions; None if one fails or exceeds the limit."""
     firsts = [version.solve(file) for version in versions]  # also warms caches
     if any("failed" in first for first in firsts):
         return None

@@ -36,7 +36,7 @@ print("spent", time.process_time() - start, time.process_time() - loaded)
 
 
 def spent(build: Path, script: Path) -> tuple[float, float]:
-    """Return two processor times in one YADE process [s]: that of the whole import, and that of setting up."""
+    """Return the processor times in one YADE process [s] of the whole import and of setting up."""
     done = subprocess.run(
         ["yade", "-n", "-x", "-j1", str(script)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
         env={**os.environ, "PYTHONPATH": str(build / "python"), "PYTHONDONTWRITEBYTECODE": "1"},

@@ -46,7 +46,7 @@ class Known:
 
     :param name: origin of the loop
     :param model: the joint model to fit
-    :param true: true parameters of the joint
+    :param true: true parameters
     """
 
     name: str
@@ -96,8 +96,8 @@ def bar_on_a_slider() -> Known:
 
 
 def sliders_of_a_truss() -> Known:
-    """Return the loop of a hundred parallel sliders behind springs, by the truss solver. Half of the sliders have slip
-    forces of an Iwan joint's density, at midpoints of equal stiffness; the others slip at the end of the density."""
+    """Return the loop of a hundred parallel sliders behind springs, by the truss solver. Half of them slip at forces of
+    an Iwan joint's density, at midpoints of equal stiffness; the others slip at its end."""
     exponent, ratio, last, count = -0.5, 1.0, 3e-4, 100
     share = (np.arange(count // 2) + 0.5) / (count // 2)
     slides = last * np.concatenate((share ** (1 / (exponent + 1)), np.ones(count - count // 2)))

@@ -58,7 +58,7 @@ def bar(change_K: float, **more: Any) -> dict[str, Any]:
 
 
 def constants() -> tuple[float, float, float]:
-    """Return the stiffness of the bar [N/m], the stiffness of its contact [N/m] and the free expansion [m/K]."""
+    """Return the stiffnesses of the bar and of its contact [N/m], and the free expansion [m/K]."""
     arrays = solve.engine_items(parse_case(bar(1.0) | {"reduced": {"sticking": "elastic"}}).resolve())
     links, slider = arrays["elements"]["links"], arrays["joints"]["slider"]
     length = links["stress_free_length_m"][0]

@@ -24,7 +24,7 @@ TOLERANCES = {  # as made: every joint on its own
 
 
 def days(peaks_K: tuple[int, ...]) -> sj.Case:
-    """Return the umbrella with a temperature program of days with the given peaks; each day takes one second."""
+    """Return the umbrella with a program of days with the given peak temperatures, one second each."""
     changes = [0, *(change for peak in peaks_K for change in (peak, 0))]
     return sj.load(CASE).changed({
         "thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.period_s": None,

@@ -139,7 +139,7 @@ def run_reduced(case: UmbrellaCase, law: str, steps_per_second: int) -> Hold:
 
 
 def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Callable[[], None]) -> list[Hold]:
-    """Run the held case in the DEM, with a friction law and a number of steps per second."""
+    """Run the held case in the DEM, with a friction law and steps per second."""
     wanted = [by_law(case, law, rate) for law, rate in cases]
     runs = ensembles.execute_all(wanted, finished)
     return [
@@ -158,7 +158,7 @@ class Prediction:
 
     @property
     def creep_rate_m_per_s(self) -> float:
-        """Absolute predicted creep rate, over the interval in which the creep rate of the runs is measured."""
+        """Absolute predicted creep rate, over the interval in which that of the runs is measured."""
         first, last = np.interp([RATE_FROM_s, RATE_TO_s], self.time_s, np.abs(self.slide_m))
         return float((last - first) / (RATE_TO_s - RATE_FROM_s))
 
@@ -229,7 +229,7 @@ def figure(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: 
 
 
 def creep_rate_at_start(case: UmbrellaCase) -> float:
-    """Return the creep rate v0 + (v1 - v0) T/(mu F_N) [m/s] at the initial angle (T tangential, F_N normal force)."""
+    """Return the creep rate v0 + (v1 - v0) T/(mu F_N) [m/s] at the initial angle, T the tangential force."""
     joint = case.joint
     load = math.tan(abs(case.start.contact_angle_rad)) / joint.friction_coefficient
     return joint.friction_v0_m_per_s + (joint.friction_v1_m_per_s - joint.friction_v0_m_per_s) * load

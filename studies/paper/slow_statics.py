@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limit of the jump for slow cycles, and predicted deviation from this limit at a finite heating rate."""
+"""Limit of the jump for slow cycles, and predicted deviation from it at a finite rate."""
 from __future__ import annotations
 
 import math

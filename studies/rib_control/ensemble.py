@@ -154,7 +154,7 @@ def _ensemble_plan(case: UmbrellaCase) -> list[tuple[Any, ...]]:
 
 
 def _jump_quantile_rad(row: Row) -> float:
-    """Return the 95 % quantile of |jump| for a row of a scan; infinite for a row that failed."""
+    """Return the 95 % quantile of |jump| in a row of a scan, infinite for a failed row."""
     found = row.results.get("jump_quantile_rad")
     return np.inf if found is None else found
 
@@ -223,8 +223,8 @@ def smallest_spring(
 ) -> SpringFound | None:
     """Scan spring stiffnesses, then bisect below the first one that passes the limit; None: no spring passes.
 
-    A statistic of chaotic runs need not decrease with the stiffness. The result is therefore only the edge below the
-    first scanned spring that passes.
+    A statistic of chaotic runs need not decrease with the stiffness, so the result is the edge below the first scanned
+    spring that passes.
     """
     springs = sorted(scanned)
     flags = [passes(spring) for spring in springs]

@@ -245,7 +245,7 @@ def _loaded_friction(case: UmbrellaCase, result: Study) -> None:
 
 
 def _loaded_spring(case: UmbrellaCase, result: Study, wanted: float) -> None:
-    """Find the smallest spring stiffness K_M. The spring acts only through the elasticity of links and contact."""
+    """Find the smallest spring stiffness K_M. It acts only through the elasticity of links and contact."""
     sweep = result.sweep(SPRING)
     asked = f"{number(wanted * 1e6)} µrad"
     result.recommendation["stiffness_N_m_per_rad"] = None

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compiles test modules against edited copies of the headers that declare YADE's interface, and checks them in a
-running YADE."""
+"""Compiles test modules against edited headers that declare YADE's interface, and checks them in a running YADE."""
 from __future__ import annotations
 
 import json

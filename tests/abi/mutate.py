@@ -69,8 +69,8 @@ class Examination:
 
 
 def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return message and fault of the guard for the unchanged declarations. The guard must accept them and leave the
-    user's scene unchanged."""
+    """Return message and fault for the unchanged declarations. The guard must accept them without change of the user's
+    scene."""
     place = compiler.folder / "unmutated"
     if compiler.static_asserts_refuse(compiler.headers):
         return "", "static assertions refuse it"

@@ -208,8 +208,7 @@ def _declared(file: h5py.File, name: str, found: Any, chance: random.Random) -> 
 
 
 def _link(file: h5py.File, name: str, found: Any, chance: random.Random) -> None:
-    """Replace an object of an HDF5 file by a link to itself, to a parent, to nothing, to another file, a device or a
-    pipe."""
+    """Replace an HDF5 object by a link: to itself, a parent, nothing, another file, a device, a pipe."""
     del file[name]
     target = chance.choice(("itself", "above", "nothing", "file", "device", "raw"))
     if target == "raw":

@@ -84,8 +84,8 @@ def command(*words: object) -> bool:
 
 
 def cases(folder: Path) -> Reader:
-    """Reader of case files, as text and as dict. The JSON of an accepted case must give the same case; every tenth is
-    run."""
+    """Reader of case files, as text and dict. The JSON of an accepted case must give the same case; every tenth is run.
+    """
     from statejump import load
     from statejump.core.errors import StatejumpError
     from statejump.kinds.limits import history_of
@@ -306,8 +306,8 @@ def temperatures(folder: Path) -> Reader:
 
 
 def tables(folder: Path) -> Reader:
-    """Reader of a case's tables of nodes, links and joints, as text and as HDF5. The JSON of an accepted case must give
-    the same case."""
+    """Reader of tables of nodes, links and joints, as text and HDF5. The JSON of an accepted case must give the same
+    case."""
     from statejump.core.item_files import write_items
     from statejump.kinds.loading import load_case, parse_case
     from statejump.kinds.truss import generate

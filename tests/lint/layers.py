@@ -175,8 +175,8 @@ def _defined(tree: ast.Module) -> set[str]:
 
 
 def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
-    """Return the groups of modules that import each other in circles (strongly connected components, Tarjan 1972), the
-    largest first."""
+    """Return the groups of modules that import each other (strongly connected components, Tarjan 1972), the largest
+    first."""
     index: dict[str, int] = {}
     low: dict[str, int] = {}
     stack: list[str] = []

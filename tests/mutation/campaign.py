@@ -98,7 +98,7 @@ def campaign(module: Module, guards: Callable[[], Guards], root: Path, sample: i
     score = Score(module, len(whole))
 
     def known(mutant: Mutant) -> str | None:
-        """Return the result of a mutant from the journal; None: the mutant must be run."""
+        """Return the journal's result of a mutant; None: it must be run."""
         found = journal.known.get(journal.key(mutant, texts[mutant.file]))
         return None if found == SURVIVED and explained(mutant, texts[mutant.file]) is None else found
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs mutants: applies each mutant to a copy of the sources, in which the tests must fail."""
+"""Runs mutants: each is applied to a copy of the sources, and tests must fail."""
 from __future__ import annotations
 
 import json
@@ -52,14 +52,14 @@ class Guards:
         self.patience: dict[str, float] = {}
 
     def check(self, guard: str) -> None:
-        """Check that a guard (a test file or program) passes with the unmutated sources, and measure its time."""
+        """Check that a guard (a test) passes with the unmutated sources, and measure its time."""
         start = time.monotonic()
         if self.fails(guard, None) is not False:
             raise SetUp(f"{self.module.name}: {guard} fails with the unmutated sources")
         self.patience[guard] = max(LEAST_SECONDS, PATIENCE * (time.monotonic() - start))
 
     def order(self, mutant: Mutant) -> list[str]:
-        """Return the guards (tests) of a mutant; the guard named like the mutated file comes first."""
+        """Return the guards (tests) of a mutant; first the one named like its file."""
         stem = Path(mutant.file).stem
         return sorted(self.module.guards, key=lambda guard: Path(guard).stem.removesuffix("_test") != stem)
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the mutants of a source file: each changes one operator, constant, sign, condition or statement.
+"""Makes mutants of a source: each changes one operator, constant, sign, condition or statement.
 
 C++ is searched as text in which comments, strings and preprocessor lines are blanked. clang-format puts blanks only
-around binary operators, which distinguishes the product ``a * b`` from the pointer ``A* b``. Numbers right after ``<``
-may be template arguments and are not changed. Python is searched by its syntax tree. Messages, documentation and
-annotations are not changed.
+around binary operators, which distinguishes product ``a * b`` and pointer ``A* b``. Numbers right after ``<`` may be
+template arguments and are not changed. Python is searched by its syntax tree. Messages, documentation and annotations
+are not changed.
 """
 from __future__ import annotations
 

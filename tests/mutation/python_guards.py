@@ -135,7 +135,7 @@ class PythonGuards(Guards):
             return line_of(frame, event, value) if frame.f_code.co_filename in executed else None
 
         class Again:
-            """A recursion error disables the trace of executed lines; each test therefore starts a new trace."""
+            """A recursion error ends a trace of executed lines, so each test starts a new one."""
 
             @staticmethod
             def pytest_runtest_setup() -> None:

@@ -124,7 +124,7 @@ def test_explained_mutants_are_still_there() -> None:
 
 
 class Oracle:
-    """A test double that detects mutants that change a number; a mutant that removes a statement does not compile."""
+    """Detects mutants that change a number; a mutant that removes a statement does not compile."""
 
     def prepare(self, wanted: list[Mutant]) -> None:
         """Nothing to make ready."""

@@ -109,8 +109,8 @@ def standing(rng: Random, shape: str, members: int) -> tuple[np.ndarray, list[tu
 
 
 def mounted(places: np.ndarray, bars: list[tuple[int, int]]) -> Sketch:
-    """Return a sketch with statically determinate supports: one node is fixed, the node farthest from it is held across
-    their line, and in space a third node is held across the plane of the three."""
+    """Return a sketch with statically determinate supports: one node is fixed, the farthest from it is held across
+    their line, and in space a third across the plane of the three."""
     dimension = places.shape[1]
     first = places - places[0]
     second = int(np.linalg.norm(first, axis=1).argmax())

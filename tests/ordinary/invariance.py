@@ -5,8 +5,8 @@
     PYTHONPATH=build/python tests/ordinary/invariance.py [--count 300] [--seed 1] [--families ...] [--most-nodes 60]
         [--out FILE.csv]
 
-The structures are of class A (``oracle.py``) and all their joints carry forces, so their paths are unique. A row has
-the largest difference of the jumps over nodes and cycles, divided by the allowed rounding error.
+The structures are of class A (``oracle.py``) and their joints all carry forces, so their paths are unique. A row has
+the largest difference of jumps, over the rounding error.
 """
 from __future__ import annotations
 

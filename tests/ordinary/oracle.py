@@ -115,7 +115,7 @@ class Frame:
         self.directions, self.lengths, self.cables = directions, np.array(lengths), np.array(cables)
 
     def _turn(self, item: dict[str, Any]) -> np.ndarray:
-        """Return the row of the equilibrium matrix for the angle from the first link to the second."""
+        """Return the equilibrium matrix' row of the angle from the first link to the second."""
         row, names = np.zeros_like(self.x), item["links"]
         for name, sign in zip(names, (-1.0, 1.0) if len(names) > 1 else (1.0,)):
             ends = [self.place[node] for node in self.links[name]["nodes"]]

@@ -41,8 +41,7 @@ def program(rng: Random) -> Document:
 
 
 def of_others(rng: Random, common: Document) -> Document:
-    """Return the program of shaded bars: it has the duration of the common program, a smaller change and another shape.
-    """
+    """Return the program of shaded bars: the common duration, a smaller change, another shape."""
     table_s = common.get("table_time_s")
     period, cycles = table_s[-1] if table_s else common["period_s"], common["cycles"]
     largest = float(np.round(rng.uniform(5, 60), 1)) * (1 if rng.random() < 0.5 else -1)

@@ -24,7 +24,7 @@ def _mount(made: Sketch, names: list[str]) -> None:
 
 
 def lattice(rng: Random, bays: int, sides: int, upright: bool) -> Sketch:
-    """Lattice boom or tower of legs, battens and diagonals; with four sides it also has bracing across the section."""
+    """Lattice boom or tower of legs, battens and diagonals; with four sides also bracing across."""
     made = Sketch(3, down=DOWN)
     radius, bay = float(rng.uniform(0.1, 0.8)), float(rng.uniform(0.3, 1.5))
     taper = float(rng.uniform(0, 0.6)) / bays if upright else 0.0

@@ -26,7 +26,7 @@ def test_many_blocks_walk_as_a_sheet() -> None:
 
 
 def test_another_friction_is_noticed() -> None:
-    """With 0.5 % more friction the same blocks rest, but the pipe loses more of its expansion: theory disagrees."""
+    """With 0.5 % more friction the same blocks rest, but the pipe loses more of its expansion."""
     one = walker("pipe", 9, 0.3)
     assert not row(replace(one, friction=0.3015), solved(one, LIMIT_S))[1]
 

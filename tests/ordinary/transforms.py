@@ -150,7 +150,7 @@ def _rescaled(document: Document, length: float, force: float) -> Changed:
 
 
 def inches(document: Document, rng: Random) -> Changed:
-    """Write lengths in inches; millimetres are not used, because areas would exceed the range of a case."""
+    """Write lengths in inches; in millimetres, areas would exceed the range of a case."""
     return _rescaled(document, 1 / 0.0254, 1.0)
 
 

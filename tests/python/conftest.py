@@ -42,7 +42,7 @@ def results_in(folder: Path) -> list[str]:
 
 
 def sealed(path: Path) -> Path:
-    """Give a changed HDF5 file a valid checksum, so that the checks after the checksum are tested."""
+    """Give a changed HDF5 file a valid checksum, to test the checks after the checksum."""
     from statejump.core.hdf5 import HEAD_BYTES, head
 
     content = path.read_bytes()

@@ -37,7 +37,7 @@ def test_outputs_are_the_columns_of_the_run() -> None:
 
 
 def test_ends_alone_need_no_full_run() -> None:
-    """An output at the ends of cycles uses a quick run with two samples; its jumps agree with a full run's to 1e-6."""
+    """Outputs at cycle ends use a quick run with two samples; its jumps agree with a full run's to 1e-6."""
     case = sj.load(TRUSS)
     node = case.node[3].name
     found = sj.sweep(case, {"thermal.cycles": [1]}, outputs=[f"jump:displacement_m[{node}].x"]).frame()

@@ -34,7 +34,7 @@ def dem_like(case: SpringSliderCase, error_m: float) -> Run:
 
 
 def found_of(case: SpringSliderCase) -> convergence.Convergence:
-    """A convergence study whose errors decrease with the heating rate and are proportional to the time step."""
+    """A study whose errors decrease with the heating rate and are proportional to the time step."""
     slower, finer = convergence.variants(case)
     runs = ([dem_like(variant, 1e-8 / (1 + place)) for place, variant in enumerate(slower)],
             [dem_like(variant, 1e-8 * variant.dem_settings.time_step_fraction) for variant in finer])

@@ -355,8 +355,7 @@ def test_an_amplitude_of_one_value_is_known_in_every_step(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("shape, factor", [("RECT", 1.0), ("CIRC", pi / 4)])
 def test_sizes_of_nodes_make_a_taper(shape: str, factor: float, tmp_path: Path) -> None:
-    """A section tapers from 10 x 20 to 20 x 10 mm: its flexibility has the integral of dx / ((1 + x) (2 - x)), 2 ln 2 /
-    3."""
+    """A section tapers from 10 x 20 to 20 x 10 mm: the integral of dx / ((1 + x) (2 - x)) is 2 ln 2 / 3."""
     text = INP.replace("2, 3, 4\n*MAT", "2, 2, 4\n*MAT").replace("TYPE=T3D2", "TYPE=B31").replace(
         "*SOLID SECTION, ELSET=BARS, MATERIAL=AL\n1.E-4",
         f"*DENSITY\n2700.\n*BEAM SECTION, ELSET=BARS, MATERIAL=AL, SECTION={shape}, NODAL THICKNESS\n1., 1.\n"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every card, field and parameter of a deck belongs to exactly one class of use, and the documentation lists it."""
+"""Every card, field and parameter of a deck is in exactly one class, and the documentation lists it."""
 from __future__ import annotations
 
 import importlib.util

@@ -56,8 +56,8 @@ def test_problems_are_solved_by_the_forces_of_the_path_and_give_them_back(tmp_pa
 
 
 def test_matrix_of_a_chain_is_its_compliance() -> None:
-    """Compliance of a chain of sliders: forces at sliders i and j both elongate the bars up to the nearer slider.
-    Normal forces are given."""
+    """Compliance of a chain: forces at sliders i and j elongate the bars up to the nearer slider. Normal forces are
+    given."""
     case = parse_case(GENERATORS["chain"](5, name="t"))
     truss = case.resolve()
     rigidity = truss.links.young_modulus_Pa * truss.links.cross_section_area_m2

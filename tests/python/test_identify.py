@@ -234,8 +234,8 @@ def test_intervals_have_a_width_and_clearances_are_not_negative() -> None:
 
 
 def test_parameter_at_the_end_of_its_range_takes_others_along() -> None:
-    """Partial slip of a hundred sliders down to the softest slider: as the Iwan exponent χ approaches -1, the sticking
-    stiffness grows without bound."""
+    """Partial slip of a hundred sliders: as the Iwan exponent χ approaches -1, the sticking stiffness grows without
+    bound."""
     loop = measured("iwan", {"stiffness": 1e9, "friction": 300.0, "iwan_exponent": -0.995, "iwan_ratio": 1e-3,
                              "preload": 0.0})
     found = sj.identify(loop, start="cycled", model="iwan")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Laws of one contact along a path of displacements, from Python and from the command line."""
+"""Laws of one contact along a displacement path, from Python and from the command line."""
 from __future__ import annotations
 
 from pathlib import Path

@@ -121,7 +121,7 @@ def test_a_folder_in_the_place_of_a_file(tmp_path: Path) -> None:
 
 
 def test_a_kill_between_two_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next run in the folder completes files whose publication has begun, and removes other unfinished files."""
+    """The next run in the folder completes files whose publication has begun, and removes other temporary files."""
     moved = os.replace
     case = tmp_path / "case"
 
@@ -184,7 +184,7 @@ def test_a_killed_run_lets_go(tmp_path: Path) -> None:
 
 
 def test_two_commands_at_once(cases: Path, tmp_path: Path) -> None:
-    """With --wait, commands that write the same results wait for each other, and all succeed."""
+    """With --wait, commands that write the same results wait for each other and succeed."""
     runs = [subprocess.Popen([COMMAND, "reduced", cases / "table1.toml", "--wait"], cwd=tmp_path, text=True,
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) for _ in range(3)]
     for run in runs:
@@ -233,7 +233,7 @@ def test_read_only_folder(bound, statejump, cases: Path, tmp_path: Path) -> None
 
 
 def test_what_may_not_be_read(bound, cases: Path, tmp_path: Path) -> None:
-    """Unreadable files, and files in a folder that may not be searched, are each reported in one line."""
+    """Unreadable files, and files in unsearchable folders, are reported in one line each."""
     (tmp_path / "case.toml").write_text((cases / "table1.toml").read_text())
     (tmp_path / "case.toml").chmod(0)
     (tmp_path / "locked").mkdir(mode=0)

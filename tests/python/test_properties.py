@@ -43,8 +43,7 @@ def numbers_of(name: str) -> list[tuple[str, Any]]:
 
 @st.composite
 def changes(draw: Any) -> tuple[str, dict[str, Any]]:
-    """A shipped case and changes of up to three of its numbers: to a near value, a far value, or a value that is not
-    finite."""
+    """A shipped case with up to three changed numbers: near the original, far from it, or not finite."""
     name = draw(st.sampled_from(SHIPPED))
     found = {}
     for key, value in draw(st.lists(st.sampled_from(numbers_of(name)), min_size=1, max_size=3)):

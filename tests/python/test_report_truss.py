@@ -149,8 +149,7 @@ def test_interrupted_run_shows_what_there_is(results: Path) -> None:
 
 
 def test_replay_without_clearance_magnifies_the_way(results: Path) -> None:
-    """Blocks without stops have no clearance: the magnification shows the displacement of the chain's end as at most 10
-    % of its length."""
+    """Blocks without stops have no clearance: the chain's end is magnified to at most 10 % of the chain's length."""
     scene = Document(read(results / "chain_10" / "reduced.h5"), "x.h5", "run1", 1e6).payload()["scene"]
     # 5 m of bars between hot and half slipped out: 2.34e-3 of that at most, 42 times in a tenth.
     assert scene["clearance_m"] == 0 and scene["magnification"] == scene["magnification_of_deformation"] >= 20

@@ -466,7 +466,7 @@ def test_random_bytes_never_reach_the_library(compared, tmp_path: Path) -> None:
 
 
 def test_other_programs_read_the_file(compared) -> None:
-    """The checksum is in the user block, which HDF5 reserves for applications, so h5py opens the file."""
+    """h5py opens the file: its checksum is in the user block, which HDF5 reserves for applications."""
     with h5py.File(compared("table1") / "comparison.h5") as file:
         assert file.userblock_size == 512 and file.attrs["format"] == layout.FORMAT
 

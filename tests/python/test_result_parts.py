@@ -76,7 +76,7 @@ def test_whatever_part_is_missing_or_of_another_type(statejump: Callable, tmp_pa
 
 
 def test_a_text_that_is_not_utf8(statejump: Callable, tmp_path: Path, cases: Path) -> None:
-    """h5py returns an invalid UTF-8 byte as half of a surrogate pair, which cannot be written to a page."""
+    """h5py returns an invalid UTF-8 byte as half of a surrogate pair, which no page can contain."""
     assert statejump("reduced", cases / "table1.toml", "--results", tmp_path, "--quiet").status == 0
     path = tmp_path / "table1" / "reduced.h5"
     with h5py.File(path, "r+") as file:

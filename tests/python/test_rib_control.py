@@ -26,7 +26,7 @@ def loaded(cases: Path):
 
 @pytest.fixture
 def free(cases: Path):
-    """The unloaded rib with time steps that are long but stable; the tests use only counts and tables, not accuracy."""
+    """The unloaded rib with long but stable time steps; tests use its counts and tables, not its accuracy."""
     case = load_case(cases / "umbrella.toml")
     return changed(case, {"ensemble.reduced_steps_per_cycle": 20000, "output.samples_per_cycle": 200})
 
@@ -157,8 +157,8 @@ def test_smallest_spring_brackets_and_says_what_fails_beyond() -> None:
 
 
 def test_recommended_spring_passes_on_both_ensembles_and_a_smaller_one_does_not(free, monkeypatch) -> None:
-    """Statistics are made up: springs pass from 0.02 on in the ensemble; with more runs from other starts, from 0.05 on
-    by the quantile and from 0.2 on by the upper bound."""
+    """Made-up statistics: springs pass from 0.02 on in the ensemble; with more runs from other starts, from 0.05 on by
+    the quantile and from 0.2 on by the upper bound."""
 
     def measure(case, runs, progress=None) -> dict[str, float]:
         spring, other = case.torsion_spring.stiffness_N_m_per_rad, case.ensemble.seed != free.ensemble.seed

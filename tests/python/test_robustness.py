@@ -186,7 +186,7 @@ def test_wrong_python_has_status_2() -> None:
 
 
 def test_stop_left_is_the_one_reached_first(cases: Path) -> None:
-    """A sine program reaches both stops in one cycle; both models must report the stop that is reached first."""
+    """A sine program reaches both stops in one cycle; both models must report the stop reached first."""
     case = load(cases / "table1.toml").changed({"thermal.shape": "sine"})
     run = case.reduced()
     columns = run.flat()

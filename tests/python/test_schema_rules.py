@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rules of case files, tested on a made-up kind of file: every rule just inside and outside its limits, with its error
-code and fields."""
+"""Rules of case files, on a made-up kind: every rule at its limits, with its error code and fields."""
 from __future__ import annotations
 
 import copy

@@ -57,7 +57,7 @@ def spring_slider(**joint: Any) -> sj.Case:
 
 
 def load_N(there: float, change_K: float, joint: Any) -> float:
-    """Return the force on the block that friction has to hold, positive towards the stop on the plus side."""
+    """Return the force on the block that friction has to hold, positive towards the plus stop."""
     strain = EXPANSION * change_K
     bar = RIGIDITY / (LENGTH * (1 + strain)) * (LENGTH * strain - there)
     stop = joint.stop_stiffness_N_per_m * (there - np.clip(there, -MINUS, PLUS))
@@ -181,8 +181,7 @@ def test_rest_sets_end_where_friction_does() -> None:
 
 
 def test_stiff_stop_is_the_rigid_one() -> None:
-    """A stiff stop yields by its force over its stiffness, 1e-9 m; positions and jumps differ from the rigid stop's by
-    less."""
+    """A stiff stop yields by its force over its stiffness, 1e-9 m; block and jump differ by no more."""
     soft, rigid = (spring_slider(**keys).reduced() for keys in ({"stop_stiffness_N_per_m": 1e12}, {}))
     assert np.abs(soft["displacement_m"] - rigid["displacement_m"]).max() < np.abs(rigid["stop_force_N"]).max() / 1e12 * 2
     assert [event.kind for event in soft.events][:2] == [event.kind for event in rigid.events][:2]
@@ -203,7 +202,7 @@ def test_soft_stops_of_a_truss_are_those_of_the_closed_form(sticking: str) -> No
 
 @pytest.mark.parametrize("play", [1e-4, 6e-4])
 def test_play_of_a_truss_is_that_of_the_identified_joint(play: float) -> None:
-    """Slip and force of the slider form the loop of friction with play in series with the slider's stiffness k_t."""
+    """Slip and force of the slider form the loop of friction with play in series with its stiffness k_t."""
     _, slide, force = states(truss(play_m=play))
     stiffness = pad_stiffness()
     joint = {"stiffness": stiffness, "friction": FRICTION, "preload": 0.0, "play": play}
@@ -279,8 +278,8 @@ def test_explicit_steps_are_the_motion(keys: dict[str, float]) -> None:
 
 
 def test_play_moves_beside_a_latch_hinge() -> None:
-    """Two uncoupled structures in one case move as each of them alone. Steps without a solution at an edge of the
-    latch's play are replaced by damped half steps in both structures, so vibrations differ by 1e-4 of the slide."""
+    """Two uncoupled structures in one case move as each alone. Steps without a solution at an edge of the latch's play
+    become damped half steps in both, so vibrations differ by 1e-4 of the slide."""
     lever = {
         "node": [{"name": "P", "position_m": [0.0, 1.0], "fixed": ["x", "y"]}, {"name": "Q", "position_m": [0.5, 1.0]},
                  {"name": "R", "position_m": [0.5, 0.6], "fixed": ["x", "y"]}],

@@ -35,7 +35,7 @@ def test_limit_by_hand() -> None:
 
 @pytest.fixture(scope="module")
 def undamped():
-    """Table 1 without dashpots and with stops out of reach: only the stiffnesses of bar and floor matter."""
+    """Table 1 without dashpots and with stops out of reach: only bar and floor have stiffness."""
     values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
     values["dem"].update(link_damping_ratio=0.0, contact_damping_ratio=0.0)
     values["joint"].update(clearance_minus_m=0.1, clearance_plus_m=0.1)
@@ -43,8 +43,8 @@ def undamped():
 
 
 def test_spring_slider_by_hand(undamped) -> None:
-    """The floor contact carries twice its 100 N: R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84 give contact radius a and
-    stiffnesses 2 E* a and 8 G* a. The bar has 1.26e6 N/m."""
+    """The floor contact carries twice its 100 N: R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84 give its radius a, 2 E* a
+    and 8 G* a. The bar has 1.26e6 N/m."""
     modulus, shear = 70e9 / (2 * 0.91), 70e9 / (4 * 1.7 * 1.3)
     width = (200 * 0.05 / (4 / 3 * modulus)) ** (1 / 3)
     mass = 2700 * 9e-6 * 0.5 / 3 + undamped.dem_settings.slider_mass_kg
@@ -165,8 +165,8 @@ def test_truss_by_hand() -> None:
 
 
 def test_damped_and_cooled_truss_by_hand() -> None:
-    """Links that are 0.1 % shorter are stiffer by 0.1 %. Each link has a dashpot 2 zeta sqrt(k m) with the node's mass
-    m; both act on the node."""
+    """Links 0.1 % shorter are stiffer by 0.1 %. Each has a dashpot 2 zeta sqrt(k m) with the node's mass m; both act on
+    the node."""
     text = TRUSS.replace("thermal_expansion_per_K = 0.0", "thermal_expansion_per_K = 1e-4")
     text = text.replace("temperature_change_max_K = 10", "temperature_change_max_K = -10")
     case = parse_case(tomllib.loads(text.replace("link_damping_ratio = 0.0", "link_damping_ratio = 0.3")))

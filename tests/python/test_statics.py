@@ -88,8 +88,7 @@ def test_profile_of_a_bore() -> None:
 
 
 def test_can_of_a_cylinder() -> None:
-    """The rest set on the mesh of a closed cylinder equals the closed form on the curved surface; rims are corners and
-    do not belong to it."""
+    """The rest set on the mesh of a closed cylinder equals the closed form; it excludes the rims, which are corners."""
     mesh = can_mesh(C, 2e-4)
     exact = _engine.rest_in_bore(C, 2e-4, [(3, 4, 1)], 0.4)["any"]
     found = _engine.rest_on_mesh(mesh, [(3, 4, 1)], 0.4)["any"]
@@ -301,7 +300,7 @@ def test_bad_mesh_files(tmp_path: Path, file: str, content: str | None, sentence
 
 
 def test_library(tmp_path: Path) -> None:
-    """No file is used: the case is a dict, and its rest sets are returned as table, picture and notebook output."""
+    """Without files: the case is a dict; its rest sets are a table, a picture, notebook output."""
     import matplotlib
 
     backend = matplotlib.get_backend()

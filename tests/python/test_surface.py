@@ -75,8 +75,7 @@ def test_change_of_focal_length_is_found_by_the_last_definition_alone() -> None:
 
 @pytest.mark.parametrize("term", range(1, 37))
 def test_every_zernike_term_returns_its_coefficient(term: int) -> None:
-    """A least-squares fit of exact Zernike terms is exact, except for rounding times the condition number for 217
-    nodes."""
+    """A least-squares fit of exact Zernike terms is exact, but for rounding times the condition number of 217 nodes."""
     moved = np.zeros_like(DRAWN)
     moved[:, 2] = 1e-6 * zernike(term, DRAWN[:, :2] / 1.5)
     wanted = np.zeros(36)

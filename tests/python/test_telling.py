@@ -121,8 +121,7 @@ def test_signal_while_the_engine_is_at_work(
 
 
 def test_internal_fault_has_a_status_of_its_own(tmp_path: Path) -> None:
-    """An internal error has its own exit status, also if it occurs while a failure is reported or before reporting is
-    set up."""
+    """An internal error has its own exit status, also during the report of a failure or before reporting is set up."""
     launcher = Path(COMMAND).read_text()
     for broken in ("import statejump.cli.main as cli; cli._report_failure = None; cli.cli = None", "raise MemoryError"):
         script = tmp_path / "broken.py"

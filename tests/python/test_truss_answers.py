@@ -140,8 +140,8 @@ def moved_by(path: TrussPath, each: list[float], node: int = 0) -> TrussPath:
 
 
 def growing(path: TrussPath, each: list[float], error: Callable[[int], float]) -> tuple[Verdict, list[int]]:
-    """Verdict on paths whose later cycles have an error that depends on the increments; also the numbers of increments
-    that the verdict tried."""
+    """Verdict on paths whose later cycles have an error that depends on the increments; the numbers of increments
+    tried."""
     asked = []
 
     def solve(increments: int) -> TrussPath:
@@ -189,9 +189,8 @@ def test_growth_is_told_only_if_it_survives_smaller_increments(mast: TrussPath) 
 
 
 def test_rolling_along_a_loop_is_of_fourth_order() -> None:
-    """Under a sine program the joints return on another path than they came. They stick, so the displacement over a
-    cycle is the error of the integration rule for radii that follow Hertz's depth. Twice the increments reduce it to a
-    sixteenth."""
+    """Under a sine program the joints return on another path, stick, and move in a cycle only by the error of the rule
+    for radii that follow Hertz's depth. Twice the increments reduce it to a sixteenth."""
     truss = made("mast", 3, shape="sine", friction_coefficient=0.5, temperature_change_K=-100.0, cycles=3,
                  tip_load_N=10.0, shaded_fraction=0.0)
     increments = np.array([12, 25, 50])

@@ -91,8 +91,7 @@ def test_no_dem_campaign(campaign: Callable[..., Plan]) -> None:
 
 
 def test_half_a_campaign_resumed(tmp_path: Path, campaign: Callable[..., Plan]) -> None:
-    """A journal with half of the samples and an incomplete last line, as after a kill, is resumed: the result has the
-    same bytes as without interruption."""
+    """A journal with half of the samples and a torn last line, as after a kill, gives the same bytes when resumed."""
     trial = campaign(FRICTION, ONE)
 
     def finish(folder: Path) -> tuple[bytes, bytes]:

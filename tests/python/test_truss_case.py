@@ -646,8 +646,7 @@ def test_a_failure_names_joint_and_nodes() -> None:
 
 
 def test_programs_of_equal_duration_are_those_to_rounding() -> None:
-    """In floating point 3 x 0.1 s differs from 0.3 s; programs with different numbers of cycles have the same duration.
-    """
+    """In floating point 3 x 0.1 s is not 0.3 s; different numbers of cycles may have the same duration."""
     data = frame()
     data["thermal"].update(cycles=1, period_s=0.3)
     set_key("program", "shade", cycles=3, period_s=0.1)(data)

@@ -118,8 +118,7 @@ def test_ring_with_joints_that_stick_elastically_jumps_as_in_the_dem(statejump, 
 
 
 def test_rib_in_space_is_the_rib_in_the_plane() -> None:
-    """One of three uncoupled ribs, each in an inclined plane, has the masses, time step and loaded start of the planar
-    rib."""
+    """One of three uncoupled ribs in inclined planes has the masses, time step and loaded start of the planar rib."""
     planar = parse_case(generate.umbrella(1))
     spatial = parse_case(generate.umbrella(3))
     paths = [solve(case) for case in (planar, spatial)]
@@ -138,7 +137,7 @@ def test_rib_in_space_is_the_rib_in_the_plane() -> None:
 
 
 def test_ribs_in_space_move_as_the_rib_in_the_plane(tmp_path: Path) -> None:
-    """The period is short, so that the comparison includes the vibration of the links."""
+    """The period is short, so that vibration of the links is compared too."""
     runs = {}
     for n in (1, 3):
         made = generate.umbrella(n, period_s=0.3)
@@ -246,8 +245,7 @@ def test_what_the_dem_cannot_represent_is_named(change, sentence: Failure) -> No
 
 
 def test_a_truss_without_masses_is_at_rest_and_does_not_move(cases: Path) -> None:
-    """Only motion needs masses: the quasi-static solver works without them, the DEM and truss dynamics refuse the case.
-    """
+    """Only dynamics needs masses: the quasi-static solver works without them, the DEM and truss dynamics refuse."""
     import statejump as sj
     from statejump.core.errors import MissingKey
 
@@ -305,8 +303,8 @@ def hot_joint(part: str, expansion_per_K: float) -> dict[str, Any]:
 
 @pytest.mark.parametrize(("part", "radius_m", "sign"), [("bearing", 5.1e-3, -1.0), ("journal", 5e-3, 1.0)])
 def test_journal_sinks_as_its_bearing_expands_in_every_model(part: str, radius_m: float, sign: float) -> None:
-    """The clearance changes by α ΔT R of the part that expands, 25 µm. The changed radius alters the contact depth by
-    0.05 µm; vibration in the dynamic models is smaller."""
+    """The clearance changes by α ΔT R of the expanding part, 25 µm. The new radius alters the contact depth by 0.05 µm;
+    vibrations are smaller."""
     expansion_per_K = 5e-5
     case = sj.load(hot_joint(part, expansion_per_K))
     explicit = case.changed({"motion.scheme": "regularised", "motion.masses": "lumped", "motion.steps_per_cycle": 8000})

@@ -118,8 +118,7 @@ assert LARGE != SMALL
 
 
 def check(found: sj.Case) -> None:
-    """Check that the path of the imported truss equals that of the truss written by hand, to the rounding of the deck.
-    """
+    """The path of the imported truss equals that of the truss written by hand, to the rounding of the deck."""
     ours, theirs = found.reduced(), sj.load(BY_HAND).reduced()
     for place, wanted in (("displacement_m", ours.history), ("axial_force_N", ours.links)):
         other = (theirs.history if place in theirs.history else theirs.links)[place].values

@@ -166,8 +166,7 @@ def test_dem_goes_through_the_play_and_slips_as_the_path(statejump: Callable[...
 
 
 def test_dem_begins_with_the_friction_of_the_path() -> None:
-    """The preload moment exceeds the friction limit. At the start friction acts at its limit, and the truss carries the
-    rest."""
+    """The preload moment exceeds the friction limit: friction acts at its limit, the truss carries the rest."""
     case = parse_case(lever(preload_moment_N_m=-5.0, deadband_rad=0.1))
     start = solve.solve(case)
     values = dem.resolved(case, start)["latch_hinge"]

@@ -172,8 +172,7 @@ def test_load_across_springs_in_line_finds_its_equilibrium(load_N: float) -> Non
 
 
 def test_hinge_that_cannot_turn_is_noted_once() -> None:
-    """The angles of a triangle on rollers change only by strain, so the hinge sticks whatever its friction moment is.
-    """
+    """The angles of a triangle on rollers change only by strain: the hinge sticks whatever its friction moment."""
     nodes = [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
              {"name": "B", "position_m": [1.0, 0.0], "fixed": ["y"]}, {"name": "C", "position_m": [2.0, 0.0], "fixed": ["y"]}]
     links = [{"name": "ab", "nodes": ["A", "B"], **STIFFNESS}, {"name": "bc", "nodes": ["B", "C"], **STIFFNESS}]

@@ -55,7 +55,7 @@ def sticking(document: dict[str, Any], kind: str) -> dict[str, Any]:
 @pytest.mark.parametrize("n", [1, 10, 100, 1000])
 def test_chain_jumps_as_the_closed_form(n: int, kind: str) -> None:
     """Link i carries the friction of every block beyond it: jump = sum of l_i/(E A)_i sum_{j>=i} f_j. All blocks slide
-    at the end of the cycle, so their sticking stiffness has no influence."""
+    at the end of the cycle, so their sticking has no influence."""
     found = path(sticking(generate.chain(n, cycles=2), kind), locate_events=False, increments_per_branch=1)
     truss = found.truss
     flexibility = truss.links.stress_free_length_m / (
@@ -68,8 +68,8 @@ def test_chain_jumps_as_the_closed_form(n: int, kind: str) -> None:
 
 
 def iwan_platform_m(truss: ResolvedTruss, changes_K: np.ndarray) -> np.ndarray:
-    """Displacement of the platform of the Iwan stack [m]. Each block is a stop operator of it, and the force of the
-    heated drive balances their sum; this piecewise linear equation is solved between its corners."""
+    """Displacement of the platform of the Iwan stack [m]. Each block is a stop operator of it; the heated drive
+    balances their forces. The equation is piecewise linear, solved between its corners."""
     links = truss.links
     rigidity = links.young_modulus_Pa * links.cross_section_area_m2
     length, expansion = links.stress_free_length_m[0], links.thermal_expansion_per_K[0]
@@ -139,8 +139,7 @@ def theta_rad(found: solve.TrussPath, at: int) -> np.ndarray:
 
 
 def test_umbrella_rib_is_the_elastic_loop() -> None:
-    """Two solvers without common code agree: Newton's method for a general truss, and the rib's own closed equations.
-    """
+    """Two solvers without common code: Newton's method for a general truss, and the rib's own closed equations."""
     case = load_case(ROOT / "cases" / "umbrella_bias.toml")
     loop = _engine.elastic_loop(umbrella.linkage(case), case.thermal_program(), samples=2000)
     found = path(generate.umbrella(1), increments_per_branch=100)
@@ -308,9 +307,9 @@ def test_heated_column_buckles_at_its_temperature() -> None:
 
 
 def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
-    """A ring on an elastic bed of stiffness k per bay buckles at the hoop force 2 sqrt(k / bay E I). The generator's
-    spokes make this four times the actual hoop force H, so a sixteenth of k removes the margin. Shear of the bays, H
-    over 1.2 MN of a diagonal, lowers the buckling force by 2 % of H, or 4 % of k."""
+    """A ring on an elastic bed of stiffness k per bay buckles at 2 sqrt(k / bay E I). The generator's spokes make this
+    four times the hoop force H, so a sixteenth of k removes the margin. Shear of the bays, H over 1.2 MN of a diagonal,
+    lowers the buckling force by 2 % of H, or 4 % of k."""
     bays, hoop_force_N = 1000, 25e3  # high, so that buckling and not the strain of the spokes chooses k
 
     def ring(softer: float) -> dict[str, Any]:
@@ -330,9 +329,9 @@ def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
 @pytest.mark.parametrize("bays", [3, 5, 12, 50])
 @pytest.mark.parametrize("change_K", [0.1, 100.0])
 def test_generated_rings_start_in_contact_at_the_drawn_shape(bays: int, change_K: float) -> None:
-    """Link lengths are chosen so that the loaded ring with closed clearances has the reference configuration; every
-    joint carries half of the hoop force. The Hertz depth remains as an error, below 6 um up to 4 kN: it reduces the
-    force by at most E A depth / bay, 84 N."""
+    """Link lengths are chosen so that the loaded ring with closed clearances has the reference configuration: every
+    joint carries half of the hoop force. The Hertz depth, below 6 um up to 4 kN, reduces the force by at most E A depth
+    / bay, 84 N."""
     found = path(generate.ring(bays, temperature_change_K=change_K), increments_per_branch=1, locate_events=False)
     outer = 0.25 / np.sin(np.pi / bays)
     hoop_force_N = max(1000.0, 7e6 * 23.4e-6 * change_K * min(0.25, outer / 2) / outer)
@@ -368,8 +367,8 @@ def opened(found: solve.TrussPath) -> np.ndarray:
 
 @pytest.mark.parametrize("contact", ["rigid", "hertz"])
 def test_rib_held_by_springs_starts_open_in_the_middle(contact: str) -> None:
-    """Both springs are stress-free in the reference configuration. The links grow without rotation. Journal and bearing
-    separate along the frame by eps AC, and the play grows by eps c: they touch when eps (AC - c) = c."""
+    """Both springs are stress-free in the reference configuration. The links grow without rotation; journal and bearing
+    part along the frame by eps AC, the play grows by eps c: they touch when eps (AC - c) = c."""
     made = generate.umbrella(1, bias_rad=0.0, contact=contact)
     made["torsion_spring"].append({"name": "ground", "links": ["AB"], "stiffness_N_m_per_rad": 2.0})
     frame, clearance, expansion = 0.12, 1e-4, 23.75e-6
@@ -393,8 +392,8 @@ def test_rib_held_by_springs_starts_open_in_the_middle(contact: str) -> None:
 
 
 def two_bars(share_of_clearance: float) -> dict[str, Any]:
-    """Two bars at 90 degrees, pulled along their bisector by a load. The journal at their common end has 100 um of
-    clearance in a fixed bearing. The load is chosen so that the journal rests at a given fraction of the clearance."""
+    """Two bars at 90 degrees, pulled along their bisector; the journal at their end has 100 um of clearance in a fixed
+    bearing. The load leaves the journal at a given fraction of the clearance."""
     made = document("two_bars", "", "closed form", 2, 100.0, "triangle", 1, 1.0)
     made["node"] += [node("A", (-0.5, 0), "xy"), node("B", (0.5, 0), "xy"), node("O", (0, -0.5), "xy"),
                      node("J", (0, -0.5), force_N=[0.0, -load_N(share_of_clearance * CLEARANCE_M)])]
@@ -496,8 +495,8 @@ def test_many_joints_that_wander_are_settled_on_few_factorizations(blocks: int) 
 
 
 def test_pivots_that_lead_on_are_left_alone() -> None:
-    """A chain of elastic blocks has as many unsuccessful active-set changes as a mast whose changes cycle, but each one
-    approaches the solution (288 factorizations)."""
+    """A chain of elastic blocks has as many useless active-set changes as a mast whose changes cycle, but each brings
+    the solution nearer (288 factorizations)."""
     chain = path(sticking(generate.chain(200, cycles=2), "elastic"), increments_per_branch=1, locate_events=False)
     assert chain.factorizations < 400
 

@@ -260,7 +260,7 @@ def test_clearance_with_expanding_radii() -> None:
 
 
 def test_duration_and_program_of_a_table() -> None:
-    """The times in a temperature table are used unchanged; a different period in the case is refused."""
+    """Times in a temperature table are used unchanged; a different period is refused."""
     data = minimal()
     data["thermal"] = {"shape": "table", "cycles": 3, "table_time_s": [0, 30, 90],
                        "table_temperature_change_K": [0, -40, 0]}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Slow heating, a joint at constant temperature, the energy account over time steps; results are reproducible in all
-bits."""
+"""Slow heating, a joint at constant temperature, the energy account over time steps, reproducibility in all bits."""
 from __future__ import annotations
 
 import math

@@ -82,8 +82,7 @@ def test_tools_that_are_there_are_not_fetched(monkeypatch: pytest.MonkeyPatch, t
     ("/nowhere/python3", "STATEJUMP_PYTHON=/nowhere/python3 does not exist; set it to"),
     ("{folder}/old", "{folder}/old is Python 3.10.9, needed is 3.11 or later; set -DSTATEJUMP_PYTHON=")])
 def test_an_unfit_python_is_refused_by_name(tmp_path: Path, python: str, sentence: str) -> None:
-    """The build's check of the Python version runs in a separate CMake project, with a Python that reports an old
-    version."""
+    """The build's check of the version, in a separate CMake project with a Python that reports an old version."""
     old = tmp_path / "old"
     old.write_text("#!/bin/sh\n")
     old.chmod(0o755)

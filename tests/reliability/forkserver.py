@@ -37,8 +37,8 @@ class Forkserver:
     """Context manager that starts the server and sends requests to it.
 
     :param launcher: the command, a Python program
-    :param environment: environment variables of the server and of all runs
-    :param folder: receives the output of the runs
+    :param environment: variables of the server and of all runs
+    :param folder: receives the output of runs
     """
 
     def __init__(self, launcher: Path, environment: Mapping[str, str], folder: Path) -> None:
@@ -80,7 +80,7 @@ class Forkserver:
 
         :param folder: working folder of the run
         :param more: environment variables besides those of the server
-        :param kill_after_s: time after which the process group is killed [s]
+        :param kill_after_s: time until the process group is killed [s]
         """
         pid = self._ask({"folder": str(folder), "words": list(words), "more": dict(more), "said": str(self._said)})
         if kill_after_s is not None:

@@ -29,8 +29,8 @@ LAWS = {"normal": "normalLaw", "dissipation": "dissipationLaw", "friction": "fri
 
 
 def scenes_of(python: Path) -> list[tuple[str, dict[str, Any]]]:
-    """Return cases and their laws: every law of the catalogue combined with the defaults of the others, and no named
-    law (Hertz and Mindlin). Laws that need an axis are left out for balls; mixed scenes and bores have fixed laws."""
+    """Return cases and their laws: each law of the catalogue with default other laws, and Hertz and Mindlin without a
+    name. A ball has no axis, so some laws are left out; mixed scenes and bores have fixed laws."""
     sys.path.insert(0, str(python))
     from statejump import _engine
 

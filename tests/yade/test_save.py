@@ -50,7 +50,7 @@ def test_saved_state_of_the_new_classes(written):
 
 
 def assert_same(found, expected):
-    """The order of contacts may change on loading, and with it the rounding of sums over 5 contacts in 700 steps."""
+    """Loading may change the order of contacts, and with it the rounding of sums of 5 contacts in 700 steps."""
     rounding = 5 * 700 * EPS
     assert found["energy"].keys() == expected["energy"].keys()
     for name, energy in expected["energy"].items():

@@ -73,8 +73,7 @@ def assert_said(found, name, steps):
 
 
 def assert_told(found, name, steps):
-    """Check the error of a run: it names quantity and part, contains time and temperature, and is raised at one of
-    these steps."""
+    """Check the error at one of these steps: its quantity and part, and time and temperature in its message."""
     kind, text, step, fault, _ = found
     assert kind == "RuntimeError"
     wanted = f"{'law_not_finite' if name == 'kept force' else 'not_allowed'} {FAULTS[name]}"

@@ -119,7 +119,7 @@ class ParaViewRecorder:
     """Writes the current scene as files for ParaView.
 
     :param prefix: beginning of all file names; missing folders are created
-    :param program: ThermalProgram whose temperature change is also written; None: no temperature
+    :param program: ThermalProgram whose temperature change is also written, or None
     """
 
     def __init__(self, prefix: str, program: sj.ThermalProgram | None = None) -> None:

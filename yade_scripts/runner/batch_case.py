@@ -5,9 +5,9 @@
     export PYTHONPATH=build/python
     yade-batch --job-threads=1 --log=@.log samples.table yade_scripts/runner/batch_case.py
 
-Each line of the table is one run. It writes the history ``samples.table.sample_<number>.csv`` and the file
-``….outcomes.json`` with the outcomes that ``statejump montecarlo`` puts into a row of its table. An interrupted batch
-cannot be resumed; use ``statejump montecarlo`` for this.
+Each line writes the history ``samples.table.sample_<number>.csv`` and ``….outcomes.json``, the numbers that ``statejump
+montecarlo`` writes into a row of its table. An interrupted batch cannot be resumed; use ``statejump montecarlo`` for
+this.
 """
 import json
 import os

@@ -167,7 +167,7 @@ def prismatic_joint(case: dict[str, Any], slider: int, depth_m: float) -> sj.Pri
 
 
 def stored_by_preload(joint: dict[str, Any], displacement: Any) -> Any:
-    """Return the energy of the preload spring [J] at displacement x: k_p x²/2 + P x."""
+    """Return the energy of the preload spring [J], k_p x²/2 + P x."""
     return (0.5 * joint["preload_stiffness_N_per_m"] * displacement + joint["preload_force_N"]) * displacement
 
 

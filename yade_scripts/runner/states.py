@@ -128,7 +128,7 @@ class Recorder:
 
 
 def dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return scalar products along the last axis, summed in the same order as Eigen, so that all bits agree."""
+    """Return scalar products along the last axis, summed in the same order as in Eigen."""
     return one[..., 0] * other[..., 0] + (one[..., 1] * other[..., 1] + one[..., 2] * other[..., 2])
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Groups of runs, and statistical tests on them: trends, effect of a measure, comparison of two ensembles."""
+"""Groups of runs, and statistical tests: trends, effect of a measure, comparison of two ensembles."""
 from __future__ import annotations
 
 from dataclasses import dataclass

@@ -170,7 +170,7 @@ def _legend_below(drawing: Figure, entries: dict[str, Any]) -> None:
 
 
 def figure_13(base: Variant, dem_ensemble: ensembles.EnsembleOfRuns, title: str, folder: Path) -> list[Path]:
-    """Write Figure 13: the paths of the centres of bearing and journal, and the relative path of the two."""
+    """Write Figure 13: paths of the centres of bearing and journal, and their relative path."""
     with style():
         drawing, panels = new_panels(1, 3, (12.6, 4.9))
         for panel, part in zip(panels, ("journal", "bearing")):

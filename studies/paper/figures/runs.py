@@ -136,7 +136,7 @@ def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> t
 
 
 def stiffness_jumps(case: UmbrellaCase, base: Variant, part: Part) -> Groups:
-    """Return the jumps for links of other cross-sections; the number of runs is that of the figures."""
+    """Return the jumps for links of other cross-sections, with as many runs as the figures."""
     others = [factor for factor in SECTIONS if factor != 1]
     jumps = {1.0: base.ensemble.jump_rad}
     with part("stiffness of the links, reduced", len(others) * case.ensemble.reduced_runs) as step:

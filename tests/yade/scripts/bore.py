@@ -19,7 +19,7 @@ def cup():
 
 
 def curve(kind, change):
-    """Force over depth, for the analytic part and for its mesh, at some angles between the vertices of the mesh."""
+    """Force over depth, for the analytic part and its mesh, at some angles between the vertices."""
     rows = []
     inner, plain, mesh = {
         "journal": (sj.Journal, sj.Bearing, tube), "ball": (sj.Ball, sj.Socket, cup)

@@ -66,8 +66,8 @@ def rows():
 
 
 def run_both(build, steps, substeps, go=in_one_go, record=None):
-    """Run a scene with YADE's loop and with the JointStepper; return the steps that YADE's loop made in each, and what
-    differs. ``record``: pair of bodies whose contact is recorded."""
+    """Run a scene in both ways; return the steps that YADE's loop made in each, and what differs. ``record``: pair of
+    bodies whose contact is recorded."""
     found = {}
     for way in ("ordinary", "stepper"):
         build()

@@ -55,7 +55,7 @@ def hertz_impact(pair_radius, pair_mass, modulus, speed):
 
 def impact(radii, densities, materials, law, velocities, spins=((0, 0, 0), (0, 0, 0)), steps=2000,
            normal=Vector3(1, 0, 0), dashpots=0.0):
-    """Let two balls collide that just touch; the second lies along the normal. Return the motion after the impact."""
+    """Let two balls collide that just touch; the second lies along the normal. Return the result."""
     reset()
     metals = [material(friction=mu, young=young, poisson=nu) for young, nu, mu in materials]
     places = (-radii[0] * normal, radii[1] * normal)

@@ -13,7 +13,7 @@ def main_module(name, function):
 
 
 def one_by_one(steps):
-    """Run the steps one at a time, because O.run(steps, True) may miss an error of the first steps."""
+    """Run step by step, because O.run(steps, True) may miss an error of the first steps."""
     for _ in range(steps):
         O.step()
 

@@ -27,8 +27,8 @@ def pair(blocked="XYZ", dt=1e-9, reader=None, **keywords):
 
 
 def loop(steps, amplitude, **keywords):
-    """Move a prismatic joint along its axis to the amplitude, to its opposite and back, with a constant lateral offset;
-    return its forces."""
+    """Forces of a prismatic joint moved along its axis to the amplitude, its opposite and back, at a constant lateral
+    offset."""
     aside = 1e-6
     ids, joint = pair(blocked="xyzXYZ", **keywords)
     rows = []
@@ -65,7 +65,7 @@ def swing(dt, time, ratio, **keywords):
 
 
 def limit(factor):
-    """One body on the spring of largest stiffness; dt is ``factor`` times the exact stability limit."""
+    """One body on the stiffest spring; dt is ``factor`` times the exact stability limit."""
     reset()
     ids = [body(OFFSET, mass=MASSES[0], blocked="XYZ"), body((0, 0, 0))]
     joint = sj.PrismaticJoint(id1=ids[0], id2=ids[1], axis=AXIS, offset=OFFSET, **LAW)

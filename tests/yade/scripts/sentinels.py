@@ -11,8 +11,7 @@ Law = sj.Law2_JointGeom_JointPhys_JointLaw
 
 
 def parting(speed: float) -> dict:
-    """A journal in contact with its bearing leaves the wall at constant speed; return the count of contacts that began.
-    """
+    """A journal leaves its bearing's wall at constant speed; return the number of contacts that began."""
     reset()
     metal = material(0.0)
     pin = body((CLEARANCE + 1e-6, 0, 0), sj.Journal(radius=R1), metal, mass=0.02, velocity=(-speed, 0, 0))

@@ -61,8 +61,7 @@ def physics():
 
 
 def go(steps):
-    """Return class and text of what ends a run. If YADE ends a run at its first step without an error, one more step
-    raises it."""
+    """Return class and text of what ends a run; if YADE misses an error of its first step, one more step raises it."""
     last = O.iter + steps
     found = sentence_of(lambda: O.run(steps, True))
     return sentence_of(O.step) if found[0] == "none" and O.iter < last else found
@@ -199,7 +198,7 @@ def nothing():
 
 
 def lengths():
-    """Expansion coefficients that reduce a length to zero: -0.1/K does so during the rise of the half_sine of 30 K."""
+    """Expansion coefficients that reduce a length to zero: -0.1/K does so within the half_sine of 30 K."""
     return {
         "body": both(nothing, build=lambda: joint(expansion=-0.1)),
         "link": both(nothing, build=lambda: joint(link_expansion=-0.1, blocked="xyzXYZ")),
@@ -217,7 +216,7 @@ def good():
 
 
 def setters():
-    """Attributes of the plugin's classes refuse invalid values at once and keep their former values."""
+    """Attributes of the plugin's classes refuse invalid values and keep their former ones."""
     joint()
     go(5)
     found = {}
@@ -240,7 +239,7 @@ def setters():
 
 
 def without_our_engines():
-    """A scene without engines of the plugin: the contact reports the failure on standard error, and the run ends."""
+    """Without engines of the plugin, a contact reports the failure on standard error, and the run ends."""
     found = {}
     for name, change in {**CHANGES, **CONTACTS}.items():
         if name not in ("position", "dt zero", "modulus nan", "friction nan"):

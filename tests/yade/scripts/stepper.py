@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The same scenes with and without the JointStepper. Usage: `stepper.py PART`; the end of this file lists the parts."""
+"""The same scenes with and without the JointStepper. `stepper.py PART`; the end of this file lists parts."""
 import struct
 import sys
 
@@ -79,7 +79,7 @@ def guided():
 
 
 def prismatic():
-    """Two tubes on hot links that slide in each other, with motion across and along the axis, from stop to stop."""
+    """Two tubes on hot links that slide in each other from stop to stop and also move across."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3, cycles=5)
     walls = [body((0, 0, 0)), body((1, 0, 0))]

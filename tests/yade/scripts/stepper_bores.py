@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bores of triangles with and without the JointStepper. Usage: `stepper_bores.py PART`; the end of this file lists the
-parts."""
+"""Bores of triangles with and without the JointStepper. `stepper_bores.py PART`; the end of this file lists parts."""
 import sys
 import tempfile
 from math import cos, pi, sin
@@ -181,8 +180,8 @@ def scenes():
 
 
 def laws():
-    """Every law of the catalogue, each with default laws for the other roles; tangential velocities are left out,
-    because a bore supports only one."""
+    """Every law of the catalogue, each with default laws for the other roles; a bore supports only one tangential
+    velocity."""
     found = {}
     for attribute, names in sj.law_names().items():
         for name in names if attribute != "tangentialVelocity" else ():

@@ -9,14 +9,14 @@ from parts import *  # noqa: F403
 
 
 def run(steps):
-    """Run the steps one at a time, because O.run(steps, True) may miss an error of the first steps: YADE only reports
-    an error that occurs after it has begun to wait."""
+    """Run step by step: O.run(steps, True) may miss an error of the first steps, because YADE only reports errors that
+    occur after it has begun to wait."""
     for _ in range(steps):
         O.step()
 
 
 def global_stepper():
-    """One contact between two free bodies, with the step chosen by YADE's GlobalStiffnessTimeStepper."""
+    """One contact between two free bodies, with the time step of YADE's own stepper."""
     reset()
     metal = material()
     depth, masses = 3e-6, (0.02, 0.07)
@@ -37,7 +37,7 @@ def global_stepper():
 
 
 def spring(factor, both_free):
-    """An axial spring-mass system released off its rest length; dt is ``factor`` times the exact stability limit."""
+    """An axial spring-mass system released off its rest length; dt is ``factor`` times the stability limit."""
     reset()
     mass, other = 0.01, 0.03
     root = body((0, 0, 0), mass=other, blocked="yzXYZ" if both_free else "xyzXYZ")
@@ -62,7 +62,7 @@ def spring(factor, both_free):
 
 
 def unguarded(factor):
-    """The exact stability limit of two springs on one mass, of which neither alone is too stiff for the step."""
+    """Stability limit of two springs on one mass, neither of which is too stiff alone."""
     reset()
     mass = 0.01
     roots = [body((-0.5, 0, 0)), body((0.5, 0, 0))]
@@ -97,8 +97,8 @@ def damped(factor):
 
 
 def joint(factor, inertia_factor):
-    """A journal that may rotate, pressed into a fixed bearing; dt is ``factor`` times stable_time_step(). Its inertia
-    is small, so rotation against the tangential spring is the fastest vibration."""
+    """A journal that may rotate, pressed into a fixed bearing; dt is ``factor`` times stable_time_step(). Inertia is
+    small, so rotation against the tangential spring is the fastest vibration."""
     reset()
     metal = material(1.0)
     mass = 0.02

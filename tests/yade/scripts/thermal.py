@@ -26,7 +26,7 @@ def programs():
 
 
 def expansion():
-    """Temperature changes of ±200 K in many steps and back to the start, with different programs for the bodies."""
+    """Temperature changes of ±200 K in many steps and back, with different programs for the bodies."""
     reset()
     steel, brass, plain = material(expansion=2.3e-5), material(expansion=1.9e-5), FrictMat()
     O.materials.append(plain)

@@ -170,7 +170,7 @@ def latch_limit(factor):
 
 
 def limit(factor):
-    """One link tip on a torsion spring stiffer than the links; dt is ``factor`` times the exact stability limit."""
+    """One link tip on a torsion spring stiffer than the links; dt is ``factor`` times the stability limit."""
     roots, tips, links = two_links(0.3, 1.5 + 1e-6, blocked1="xyzXYZ", area=1e-12)
     spring = sj.TorsionSpring(link1=links[0], link2=links[1], stiffness=50.0, freeAngle=1.2)
     engines(links=links, springs=[spring])

@@ -55,10 +55,10 @@ class Joints:
 
     def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
                 expand: Callable[[int, Row], None]) -> None:
-        """Set shapes and materials for contact at the bodies of nodes.
+        """Set contact shapes and materials of the bodies of nodes.
 
-        :param turn: called with a link and a node whose body rotates with this link
-        :param expand: called with a node whose body expands, and the joint that has its temperature
+        :param turn: called with a link and a node whose body rotates with it
+        :param expand: called with a node whose body expands, and the joint with its temperature
         """
         raise NotImplementedError
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Torsion springs of a truss in YADE, from the case's section of torsion springs and from joints."""
+"""Torsion springs of a truss in YADE: those of the case, and those that represent joints."""
 from __future__ import annotations
 
 from math import atan2, cos, pi, sin
