@@ -47,7 +47,7 @@ def measured(what: str, repetition: int, campaign: Plan, workers: int | None) ->
 
 
 def bare(repetition: int, campaign: Plan) -> dict[str, object]:
-    """Run the same samples in a loop in this process, without Dask and without a journal."""
+    """Run the same samples in a loop in this process, without Dask and without a journal file."""
     load, started = os.getloadavg()[0], time.perf_counter()
     for index in range(campaign.samples):
         work.run_sample(campaign, index)

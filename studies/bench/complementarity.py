@@ -77,7 +77,7 @@ def percent(values: Sequence[bool]) -> str:
 
 
 def ours(number: int, seed: int, workers: int, most_seconds: float) -> list[str]:
-    """Return the table of this project's solver: fraction of problems solved within a time."""
+    """Return the table of this project's solver: fraction of problems solved within time limits."""
     end = time.monotonic() + most_seconds
     batches = range(seed, seed + -(-number // (2 * len(FAMILIES))))
     found: list[Run] = []

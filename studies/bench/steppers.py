@@ -5,7 +5,7 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py
 
 The cost is the CPU time of the steps on one thread, without the start of YADE. A chain of 1000 joints runs without
-samples; the damped rib and Table 1 run with the samples of the case and with few.
+samples; the damped rib and the paper's Table 1 run with the samples of the case and with few.
 """
 from __future__ import annotations
 

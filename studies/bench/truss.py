@@ -67,7 +67,7 @@ def document(truss: str, joints: int) -> dict[str, Any]:
 
 
 def column(items: Sequence[Mapping[str, Any]], key: str) -> Any:
-    """Return the values of a key for all items as a data set; a missing value is NaN or empty text."""
+    """Return the values of a key for all nodes, links or joints as a data set; a missing value is NaN or empty text."""
     given: Any = next(item[key] for item in items if key in item)
     if not isinstance(given, list):
         none: Any = "" if isinstance(given, str) else np.nan

@@ -149,7 +149,7 @@ def pinned(truss: ResolvedTruss) -> ResolvedTruss:
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
     """Return the derivative of the solver's displacements (n, 3) [m] by a common factor of temperatures and loads, at
-    0."""
+    zero load."""
     def moved(step: float) -> Numbers:
         count = len(truss.links.names)
         program = TrussThermal(shape="triangle", temperature_change_max_K=1.0, period_s=1.0)

@@ -115,7 +115,8 @@ def sliders_of_a_truss() -> Known:
 
 
 def slider_in_yade() -> Known:
-    """Return the loop of Table 1 without stops in the DEM: the pad's Mindlin stiffness is in series with the bar."""
+    """Return the loop of the paper's Table 1 without stops in the DEM: pad (Mindlin stiffness) and bar are in series.
+    """
     case = sj.load("table1").changed({**TABLE, "joint.clearance_minus_m": 1e-2, "joint.clearance_plus_m": 1e-2,
                                       "dem.samples_per_cycle": 500, "thermal.period_s": 5.0})
     run = case.dem(progress=sys.stderr.isatty()).frame()

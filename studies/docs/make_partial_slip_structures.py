@@ -53,7 +53,7 @@ def moves_m(found: solve.TrussPath) -> np.ndarray:
 
 
 def bar(change_K: float, **more: Any) -> dict[str, Any]:
-    """Return the case document of Table 1's bar on a slider, without stops."""
+    """Return the case document of the bar on a slider of the paper's Table 1, without stops."""
     return generate.chain(1, friction_force_N=FRICTION_N, temperature_change_K=change_K, **more)
 
 

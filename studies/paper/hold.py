@@ -101,7 +101,7 @@ def held(case: UmbrellaCase, period_s: float = PERIOD_s) -> UmbrellaCase:
 
 
 def by_law(case: UmbrellaCase, law: str, steps_per_second: int) -> UmbrellaCase:
-    """Return the held case with the given friction law and number of time steps."""
+    """Return the case at constant temperature with a friction law and a number of time steps."""
     samples = case.output.samples_per_cycle
     steps = samples * math.ceil(case.period_s * steps_per_second / samples)
     return with_values(
@@ -139,7 +139,7 @@ def run_reduced(case: UmbrellaCase, law: str, steps_per_second: int) -> Hold:
 
 
 def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Callable[[], None]) -> list[Hold]:
-    """Run the held case in the DEM, with a friction law and steps per second."""
+    """Run the case at constant temperature in the DEM, with a friction law and steps per second."""
     wanted = [by_law(case, law, rate) for law, rate in cases]
     runs = ensembles.execute_all(wanted, finished)
     return [

@@ -34,7 +34,7 @@ def checks(folder: Path) -> dict[str, Any]:
 
 
 def scene(folder: Path) -> dict[str, Any]:
-    """Run all checks of the guard in a scene with everything that the guard might disturb."""
+    """Run all checks of YADE's interface in a scene with everything that they might disturb."""
     O.bodies.append([utils.sphere((0, 0, 0), 1), utils.sphere((0, 0, 1.9), 1)])
     O.engines = [
         ForceResetter(),

@@ -41,7 +41,7 @@ class Examination:
         self.description = said["description"]
 
     def examine(self, mutation: Mutation) -> tuple[str, str, str]:
-        """Return the check that detected a mutation, the guard's message, and a fault of the guard (empty: none). The
+        """Return the check that detected a mutation, its message, and a fault of the interface check (empty: none). The
         check is "" for an edit without effect."""
         place = self.compiler.folder / mutation.name.replace(" ", "_")
         headers = place / "include"
@@ -69,8 +69,8 @@ class Examination:
 
 
 def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return message and fault for the unchanged declarations. The guard must accept them without change of the user's
-    scene."""
+    """Return message and fault of the interface check for unchanged declarations, which it must accept without change
+    of the user's scene."""
     place = compiler.folder / "unmutated"
     if compiler.static_asserts_refuse(compiler.headers):
         return "", "static assertions refuse it"
@@ -83,8 +83,8 @@ def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
 
 
 def other_build(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return message and fault of the guard for a library with an unknown build identifier. The message must contain a
-    command."""
+    """Return message and fault of the interface check for a library with an unknown build identifier: the message must
+    contain a command."""
     place = compiler.folder / "other_build"
     package = place / "statejump_yade"
     package.mkdir(parents=True)
@@ -109,7 +109,7 @@ def other_build(compiler: Compiler, yade: Yade) -> tuple[str, str]:
 
 
 def main() -> int:
-    """Examine all mutations; return 0 if the guard handles all of them."""
+    """Examine all mutations; return 0 if the interface check handles all of them."""
     parser = argparse.ArgumentParser(description=__doc__)
     add_options(parser)
     parser.add_argument("--random", type=int, default=0, help="so many mutations at random beside the listed ones")

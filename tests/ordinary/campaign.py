@@ -156,7 +156,7 @@ def table(rows: list[Row]) -> str:
 
 
 def groups(rows: list[Row]) -> dict[str, list[Row]]:
-    """Return the table rows of structures with a path, grouped by the requirement on their class."""
+    """Return the table rows of structures with a quasi-static path, grouped by the requirement on their class."""
     path = [row for row in rows if has_path(row)]
     return {
         "path, no clearance joint": [row for row in path if not row["clearance"]],
@@ -173,7 +173,8 @@ def fraction(rows: list[Row]) -> float:
 
 
 def summary(rows: list[Row]) -> str:
-    """Return a table with the fraction of structures with a path that was finished, and the count of wrong outcomes."""
+    """Return a table: fraction of structures with a quasi-static path that was finished, and count of wrong outcomes.
+    """
     lines = ["| structures | number | finished | fraction |", "|---|---|---|---|"]
     for name, chosen in groups(rows).items():
         finished = sum(row["outcome"] == "finished" for row in chosen)
@@ -194,7 +195,7 @@ def summary(rows: list[Row]) -> str:
 
 
 def write_cases(rows: list[Row], folder: Path) -> None:
-    """Write the case files of structures with a path that were not finished, and of outcomes that are always faults."""
+    """Write the case files of structures with a quasi-static path that were not finished, and of wrong outcomes."""
     from statejump.kinds.truss.generate.document import to_toml
 
     folder.mkdir(parents=True, exist_ok=True)

@@ -109,7 +109,7 @@ def standing(rng: Random, shape: str, members: int) -> tuple[np.ndarray, list[tu
 
 
 def mounted(places: np.ndarray, bars: list[tuple[int, int]]) -> Sketch:
-    """Return a sketch with statically determinate supports: one node is fixed, the farthest from it is held across
+    """Return a structure with statically determinate supports: one node is fixed, the farthest from it is held across
     their line, and in space a third across the plane of the three."""
     dimension = places.shape[1]
     first = places - places[0]

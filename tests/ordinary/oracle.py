@@ -131,7 +131,8 @@ class Frame:
         return row.ravel()
 
     def thermal_tensions(self) -> list[np.ndarray]:
-        """Return the thermal forces of bars of fixed length, tension positive, at both extremes of the programs."""
+        """Return the thermal forces of bars of fixed length, tension positive, at both extremes of the temperature
+        programs."""
         programs = {None: self.document["thermal"], **{one["name"]: one for one in self.document.get("program", ())}}
         found = []
         for largest in (True, False):

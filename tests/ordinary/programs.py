@@ -20,7 +20,7 @@ TABLES: dict[str, list[float]] = {
 
 
 def table(kind: str, largest_K: float, period_s: float, cycles: int) -> Document:
-    """Return a program of table rows with a given duration of the period."""
+    """Return a temperature program from table rows, with a given period."""
     values = TABLES[kind]
     times = np.linspace(0, period_s, len(values))
     return {

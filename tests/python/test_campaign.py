@@ -578,8 +578,8 @@ def test_changed_campaign_is_refused(tmp_path: Path, write: Callable[..., Path])
 
 
 def test_damaged_journal(tmp_path: Path, write: Callable[..., Path]) -> None:
-    """An altered byte in any line except the last makes the journal invalid. An incomplete or altered last line is
-    removed, and its samples are run again."""
+    """An altered byte in any line except the last makes the campaign's journal invalid. An incomplete or altered last
+    line is removed, and its samples are run again."""
     campaign = load_campaign(write(), MONTECARLO)
     path = tmp_path / journal.NAME
     with journal.Journal(tmp_path, campaign, restart=False) as kept:

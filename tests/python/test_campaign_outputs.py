@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outputs of campaigns: any column of a run for a named item, and errors reported before any run."""
+"""Outputs of campaigns: any column of a run for a named node or joint, and errors reported before any run."""
 from __future__ import annotations
 
 import csv

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Output files: one file is written completely or not at all, so is a group of files, and only one run writes at a
-time."""
+"""A file, or a group of files, is written completely or not at all; only one run at a time writes into a folder."""
 from __future__ import annotations
 
 import csv

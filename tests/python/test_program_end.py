@@ -67,7 +67,8 @@ def test_return_is_added_and_reported(name: str, jump: str, there: str) -> None:
 
 
 def test_displacement_at_the_end_is_that_of_the_closed_form() -> None:
-    """The bar of Table 1 slides back and forth: x = α ΔT l - f l/(E A) while it slides and the temperature falls."""
+    """The bar of the paper's Table 1 slides back and forth: x = α ΔT l - f l/(E A) while it slides and the temperature
+    falls."""
     case = sj.load("table1").changed(TABLE)
     link = case.definition.link
     expands = link.thermal_expansion_per_K * link.stress_free_length_m

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Report page of a truss: jumps, ranking of joints, sensitivities; also if there are no answers in the results."""
+"""Report page of a truss: jumps, ranking of joints, sensitivities; also without results of `truss answers`."""
 from __future__ import annotations
 
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers about a truss in its result file: layout, values read back, and use by the commands."""
+"""Results of `truss answers` in the result file: layout, values read back, and use by the commands."""
 from __future__ import annotations
 
 import csv

@@ -107,7 +107,7 @@ def moved_with_play(change_K: np.ndarray, joint: Any) -> np.ndarray:
 @pytest.mark.parametrize("preload", [{}, {"preload_stiffness_N_per_m": 2e5, "preload_force_N": 80.0},
                                      {"preload_force_N": -700.0}])
 def test_closed_form_is_that_of_small_steps(preload: dict[str, float]) -> None:
-    """The comparison includes the start, where the last of the preloads presses the block on the stop."""
+    """With the last preload, the block is pressed on the stop already at the start."""
     case = spring_slider(stop_stiffness_N_per_m=STOP, **preload)
     run = case.reduced()
     # Halving leaves 1 m/2^60.
@@ -181,7 +181,7 @@ def test_rest_sets_end_where_friction_does() -> None:
 
 
 def test_stiff_stop_is_the_rigid_one() -> None:
-    """A stiff stop yields by its force over its stiffness, 1e-9 m; block and jump differ by no more."""
+    """A stiff stop yields by its force over its stiffness, 1e-9 m; position of the block and jump differ by no more."""
     soft, rigid = (spring_slider(**keys).reduced() for keys in ({"stop_stiffness_N_per_m": 1e12}, {}))
     assert np.abs(soft["displacement_m"] - rigid["displacement_m"]).max() < np.abs(rigid["stop_force_N"]).max() / 1e12 * 2
     assert [event.kind for event in soft.events][:2] == [event.kind for event in rigid.events][:2]
@@ -202,7 +202,7 @@ def test_soft_stops_of_a_truss_are_those_of_the_closed_form(sticking: str) -> No
 
 @pytest.mark.parametrize("play", [1e-4, 6e-4])
 def test_play_of_a_truss_is_that_of_the_identified_joint(play: float) -> None:
-    """Slip and force of the slider form the loop of friction with play in series with its stiffness k_t."""
+    """Slip and force of the slider form the loop of friction with play, in series with the pad's stiffness k_t."""
     _, slide, force = states(truss(play_m=play))
     stiffness = pad_stiffness()
     joint = {"stiffness": stiffness, "friction": FRICTION, "preload": 0.0, "play": play}

@@ -35,7 +35,7 @@ def test_limit_by_hand() -> None:
 
 @pytest.fixture(scope="module")
 def undamped():
-    """Table 1 without dashpots and with stops out of reach: only bar and floor have stiffness."""
+    """The paper's Table 1 without dashpots and with stops out of reach: only bar and floor have stiffness."""
     values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
     values["dem"].update(link_damping_ratio=0.0, contact_damping_ratio=0.0)
     values["joint"].update(clearance_minus_m=0.1, clearance_plus_m=0.1)
@@ -59,7 +59,7 @@ def test_spring_slider_by_hand(undamped) -> None:
     (2e-3, 100.0, "across"),  # no stop is met
 ])
 def test_damped_spring_slider_by_hand(play_m: float, heated_K: float, stiffer: str) -> None:
-    """Along both axes of the slider: stiffnesses of bar, floor and stop at twice their forces, each with a dashpot 2
+    """Both axes of the slider have the stiffnesses of bar, floor and stop at twice their forces, each with a dashpot 2
     zeta sqrt(k m)."""
     values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
     values["joint"].update(clearance_plus_m=play_m, clearance_minus_m=play_m, preload_stiffness_N_per_m=1e5)

@@ -32,7 +32,7 @@ JUMP_m = 2.0 * 2e-5 * 100.0 * 0.1
 
 @pytest.fixture
 def rod(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A case file of the toy kind, which is registered only during the test."""
+    """A case file of the toy kind of case, which is registered only during the test."""
     monkeypatch.syspath_prepend(str(HERE / "toy"))
     known = dict(kinds.KINDS)
     kinds.register(PLACE)

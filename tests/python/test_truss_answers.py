@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers about trusses: closed forms for the chain, verdicts, fits of a surface, and files of the command."""
+"""``truss answers``: closed forms for the chain, verdicts, fits of a surface, and files of the command."""
 from __future__ import annotations
 
 import csv
@@ -189,8 +189,8 @@ def test_growth_is_told_only_if_it_survives_smaller_increments(mast: TrussPath) 
 
 
 def test_rolling_along_a_loop_is_of_fourth_order() -> None:
-    """Under a sine program the joints return on another path, stick, and move in a cycle only by the error of the rule
-    for radii that follow Hertz's depth. Twice the increments reduce it to a sixteenth."""
+    """Under a sine program the joints return on another path and stick. The displacement over a cycle is then the error
+    of the integration rule; twice the increments reduce it to a sixteenth."""
     truss = made("mast", 3, shape="sine", friction_coefficient=0.5, temperature_change_K=-100.0, cycles=3,
                  tip_load_N=10.0, shaded_fraction=0.0)
     increments = np.array([12, 25, 50])

@@ -245,7 +245,8 @@ def test_what_the_dem_cannot_represent_is_named(change, sentence: Failure) -> No
 
 
 def test_a_truss_without_masses_is_at_rest_and_does_not_move(cases: Path) -> None:
-    """Only dynamics needs masses: the quasi-static solver works without them, the DEM and truss dynamics refuse."""
+    """Only dynamics needs masses: the quasi-static solver works without them, the DEM and truss dynamics refuse the
+    case."""
     import statejump as sj
     from statejump.core.errors import MissingKey
 

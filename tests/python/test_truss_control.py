@@ -26,7 +26,7 @@ STIFFNESS = 1.26e6  # of the bar of Table 1, EA/l [N/m]
 
 
 def bar_on_a_slider(cases: Path) -> sj.Case:
-    """Table 1 as a truss: the bar, and its joint as a slider without stops."""
+    """The paper's Table 1 as a truss: the bar, and its joint as a slider without stops."""
     table1 = load_case(cases / "table1.toml")
     made = sj.truss.chain(1)
     return parse_case({**made.origin.document, "slider": [

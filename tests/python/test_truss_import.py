@@ -266,7 +266,7 @@ def test_sliders_in_links_take_what_identify_wrote(tmp_path: Path, statejump: Ca
 
 
 def test_a_slide_in_a_link_opens_as_the_link_is_pulled(tmp_path: Path) -> None:
-    """A bar between walls cools: it shortens by 2.3 mm, of which opening of the slide accommodates 1 mm."""
+    """A bar between walls cools and shortens by 2.3 mm; the slide provides 1 mm of it."""
     (tmp_path / "pull.bdf").write_text(
         "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCONROD,1,1,2,5,1.-4\nMAT1,5,7.+10,,.3,2700.,2.3-5,0.\n"
         "SPC1,1,123,1,2\nTEMP,3,1,-100.,2,-100.\nENDDATA\n")

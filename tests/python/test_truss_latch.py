@@ -85,7 +85,7 @@ def test_energy_is_kept_across_the_edges_of_plays_and_of_cables() -> None:
     """Steps end where a play closes or a slack cable becomes taut. The work is then fourth-order accurate, (1/20)^4 of
     the bending energy.
 
-    The boom rotates by 0.01 rad and crosses its play twice; steps across the edges would cause an error of 1e-4."""
+    The boom rotates by 0.01 rad and crosses its play twice; steps across its ends would cause an error of 1e-4."""
     for name in ("latch_lever", "latch_boom", "chain_cable"):
         case = sj.load(REPOSITORY / f"cases/trusses/{name}.toml").changed({"reduced.increments_per_branch": 20})
         run = case.reduced()

@@ -112,9 +112,8 @@ def sheet(blocks: int, friction: float, slope: float, change_K: float = 40.0) ->
 @pytest.mark.parametrize("friction", [0.2, 0.342, 0.45, 0.6])
 @pytest.mark.parametrize("blocks", [4, 5, 9, 16, 33, 60])
 def test_sheet_walks_down_by_the_closed_form(blocks: int, friction: float) -> None:
-    """A sheet of length L and weight w per length on a slope b walks (L tan b / mu)(a dT - (mu cos b - sin b) w L / E
-    A) per cycle. Its two neutral points are L tan b / mu apart; with discrete blocks each is at a block, up to half a
-    block away."""
+    """A sheet of length L and weight w per length on a slope b walks (L tan b / mu)(a dT - (mu cos b - sin b) w L / EA)
+    in a cycle. Its two neutral points are L tan b / mu apart; with discrete blocks each is up to half a block away."""
     slope = 0.15
     found = path(sheet(blocks, friction, slope))
     ends = found.cycle_ends["displacement_m"][:, :, 0]
@@ -126,7 +125,7 @@ def test_sheet_walks_down_by_the_closed_form(blocks: int, friction: float) -> No
 
 
 def frame_on_foot(side_N: float, clearance_m: float | None = None) -> dict[str, Any]:
-    """A bar held only by the friction of its foot, 24 N."""
+    """A bar held only by the friction of its foot, at most 24 N."""
     nodes = [{"name": "P", "position_m": [0.0, 0.0], "fixed": ["y"]},
              {"name": "Q", "position_m": [1.0, 0.0], "fixed": ["y"], "force_N": [side_N, 0.0]}]
     foot = {"name": "foot", "nodes": ["P"], "axis": [1.0, 0.0], "friction_coefficient": 0.3, "normal_force_N": 80.0}

@@ -49,7 +49,8 @@ def beside(document: dict[str, Any], folder: Path) -> Path:
 
 
 def in_hdf5(items: list[dict[str, Any]], path: Path) -> None:
-    """Write items as data sets: texts, rows of texts padded with empty texts, numbers with NaN for missing values."""
+    """Write nodes, links or joints as data sets: texts, rows of texts padded with empty texts, numbers with NaN for
+    missing values."""
     with h5py.File(path, "w") as file:
         for key in {key: None for item in items for key in item}:
             values = [item.get(key) for item in items]

@@ -183,7 +183,7 @@ class Campaign:
                 subject.faults.append(f"{how}: {refused}")
 
     def check_journal(self, folder: Path) -> None:
-        """Open a journal. :raises Unreadable: a line other than the last one is damaged"""
+        """Open a campaign's journal. :raises Unreadable: a line other than the last one is damaged"""
         from statejump.campaign.campaign_file import load_campaign
         from statejump.campaign.journal import Journal
         from statejump.core.errors import Unreadable

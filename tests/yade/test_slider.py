@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene of Table 1 (1-D clearance joint) in a short orbit, compared with the closed forms."""
+"""The scene of the paper's Table 1 (1-D clearance joint) in a short orbit, compared with the closed forms."""
 import pytest
 
 K = 70e9 * 9e-6 / 0.5

@@ -179,8 +179,8 @@ def release(case):
 
 
 def wrong(case, beyond):
-    """Return the number of joints that differ from the prediction, farther from the cone's edge than 1 degree
-    (``beyond``) or nearer."""
+    """Return the number of joints that differ from the prediction, more (``beyond``) or less than 1 degree from the
+    cone's edge."""
     return sum(
         (row["predicted"] == "stays") != (row["seen"] == "stayed")
         and (abs(row["angle_to_force_deg"] - degrees(cone)) > 1) == beyond

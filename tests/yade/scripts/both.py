@@ -66,8 +66,8 @@ def rows():
 
 
 def run_both(build, steps, substeps, go=in_one_go, record=None):
-    """Run a scene in both ways; return the steps that YADE's loop made in each, and what differs. ``record``: pair of
-    bodies whose contact is recorded."""
+    """Run a scene with YADE's loop and with the JointStepper; return how many steps YADE's loop made in each run, and
+    what differs. ``record``: pair of bodies whose contact is recorded."""
     found = {}
     for way in ("ordinary", "stepper"):
         build()
@@ -124,7 +124,8 @@ def erased(number):
 
 
 def error_of(build, steps=2000, substeps=100):
-    """Return class, text, step and time of the error that ends a run in either loop, and its fault."""
+    """Return what ends a run with YADE's loop and with the JointStepper: class, text, step and time of the error, its
+    fault."""
     found = []
     for way in ("ordinary", "stepper"):
         build()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The same scenes with and without the JointStepper. `stepper.py PART`; the end of this file lists parts."""
+"""The same scenes with and without the JointStepper. Usage: `stepper.py PART`; the end of this file lists the parts."""
 import struct
 import sys
 

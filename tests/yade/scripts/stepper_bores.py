@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bores of triangles with and without the JointStepper. `stepper_bores.py PART`; the end of this file lists parts."""
+"""Bores of triangles with and without the JointStepper. Usage: `stepper_bores.py PART`, with the parts listed at the
+end."""
 import sys
 import tempfile
 from math import cos, pi, sin

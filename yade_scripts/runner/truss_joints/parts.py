@@ -63,7 +63,7 @@ class Joints:
         raise NotImplementedError
 
     def append(self, ids: list[int]) -> Iterator[tuple[int, int]]:
-        """Append the bodies of the joints themselves; yield the pairs of bodies that may touch."""
+        """Append the bodies that belong to joints only; yield the pairs of bodies that may touch."""
         raise NotImplementedError
 
     def radii(self) -> list[float]:
