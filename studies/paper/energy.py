@@ -152,7 +152,8 @@ def rounding_J(case: UmbrellaCase) -> float:
 
 
 def corner_W(case: UmbrellaCase) -> float:
-    """Return the power of the dashpots of both links [W] right after a corner of a triangle program, c (2 dl/dt)^2."""
+    """Return the power of the dashpots of both links [W], c (2 dl/dt)^2, just after a reversal of a triangular
+    temperature program."""
     if case.thermal.shape != "triangle":
         return 0.0
     rate = abs(float(case.thermal_program().temperature_rate(0.0)))

@@ -123,7 +123,7 @@ def _measure(case: UmbrellaCase, name: str, steps_per_second: int, history: Run)
 
 
 def _arc(case: UmbrellaCase, angle: np.ndarray, theta2: np.ndarray, theta4: np.ndarray) -> np.ndarray:
-    """Return the slide since the first entry [m]. Differences are formed before the sum, to reduce rounding errors."""
+    """Return the slide of a run since its first sample [m]. Differences are formed before the sum, against rounding."""
     joint = case.joint
     return (
         joint.radial_clearance_m * (angle - angle[0])

@@ -106,7 +106,8 @@ def jumps(run: Run) -> tuple[float, float]:
 
 
 def _parts(case: UmbrellaCase) -> bool:
-    """Return whether the program closes the clearance. If so, an unbiased joint becomes loaded and opens again."""
+    """Return whether the temperature program closes the clearance, so that an unbiased joint is loaded and opens again.
+    """
     if case.link_ab.thermal_expansion_per_K != case.link_bc.thermal_expansion_per_K:
         return False
     return model.linkage(case).first_contact_temperature_change() < case.temperature_range_K[1]
@@ -190,7 +191,7 @@ def _rows_of(block: Block, name: str, periods: Sequence[float], found: Sequence[
 def study(
     chosen: Sequence[Block], on_progress: OnProgress, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
 ) -> list[Row]:
-    """Run all blocks of periods in both models. The longest DEM runs start first, one per core."""
+    """Run every block (a variant with its periods) in both models. The longest DEM runs start first, one per core."""
     pairs = [(block, period) for block in chosen for period in block.dem_periods_s]
     pairs.sort(key=lambda pair: -pair[1])
     total = sum(len(block.dem_periods_s) for block in chosen) + len(chosen) * len(reduced_periods_s)

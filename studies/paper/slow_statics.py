@@ -100,8 +100,8 @@ def equilibrium(
 
 
 def lag(case: UmbrellaCase, loop: _engine.ElasticLoop) -> tuple[float | None, float | None]:
-    """Return the predicted deviation of both jumps [rad], which the damping couples of the pins cause at the end of the
-    program.
+    """Return the predicted deviations of the jumps of θ2 and θ4 [rad], caused by damping couples of the pins at the
+    program's end.
 
     None if the joint sticks at the end, because an earlier state then determines the jump.
     """

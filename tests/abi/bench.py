@@ -58,7 +58,8 @@ class Compiler:
         return command + [f"-isystem{path}" for path in self.options.include]
 
     def object(self, source: Path, folder: Path | None = None) -> Path:
-        """Compile a source of the guard; headers generated in the folder take precedence over those of the build."""
+        """Compile a source of the interface check; headers generated in the folder take precedence over those of the
+        build."""
         target = (folder or self.folder) / f"{source.stem}.o"
         first = [f"-I{folder}"] if folder else []
         self._run([*self._command(NO_ALIGNMENT, self.headers, first), "-c", str(source), "-o", str(target)])

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutation test of the guard: every wrong declaration of YADE's interface must be refused.
+"""Mutation test of the guard (interface check): it must refuse every wrong declaration of YADE's interface.
 
 Every mutation edits a copy of the headers that declare the interface; the copy is compiled without static assertions.
 The guard inside a running YADE must report the mutation without build identifiers, before it calls any code of YADE. A

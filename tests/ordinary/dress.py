@@ -172,7 +172,7 @@ class Joiner:
                 and all(node in self.made.bars[other].ends for other in self._turned_by(bar, node)))
 
     def _turned_by(self, bar: str, node: str) -> list[str]:
-        """Return the bars that springs and latches couple to a bar at a node of the shape without joints."""
+        """Return the bars that springs or latches couple to a given bar, at a node of the original shape."""
         pairs = [item["links"] for section in ("torsion_spring", "latch_hinge")
                  for item in self.made.items.get(section, ()) if bar in item["links"]]
         others = [other for pair in pairs for other in pair if other != bar]

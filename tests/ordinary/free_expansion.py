@@ -155,7 +155,7 @@ def heated(made: Sketch, rng: Random, uniform: bool) -> tuple[Document, list[Doc
 
 
 def truss(seed: int) -> Truss | None:
-    """Return the truss of a seed; None if its shape is (nearly) a mechanism or changes too much under the heat."""
+    """Return the truss of a seed; None if its shape is (nearly) a mechanism or heating changes it too much."""
     rng = structures.random_of("free_expansion", seed)
     shape = str(rng.choice(["grown", "meshed", *STANDING], p=[0.35, 0.35, *[0.3 / len(STANDING)] * len(STANDING)]))
     members = int(round(10 ** rng.uniform(0, np.log10(MOST))))

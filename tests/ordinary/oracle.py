@@ -292,9 +292,8 @@ def _balanced(frame: Frame, basis: np.ndarray, moved: np.ndarray, load: np.ndarr
 
 
 def follow(frame: Frame, basis: np.ndarray) -> np.ndarray | None:
-    """Return the displacement of the loaded structure with held joints. It is followed from the reference configuration
-    along loads that increase in adaptive steps, and with them the imbalance of preloads. None: the structure becomes
-    unstable."""
+    """Return the displacement of the loaded structure with held joints, followed from the reference configuration while
+    loads and the imbalance of preloads increase in adaptive steps. None: the structure becomes unstable."""
     force, lacking = basis.T @ frame.force, basis.T @ _forces(frame, np.zeros(frame.x.size))[0]
     moved, reached, step = np.zeros(frame.x.size), 0.0, 0.25
     while reached < 1.0:

@@ -161,7 +161,7 @@ def test_a_mass_moves_with_the_node_of_an_equation(tmp_path: Path) -> None:
 
 
 def test_a_mean_shares_its_load_by_weights_and_levers(tmp_path: Path) -> None:
-    """A mean with weights 1 and 3: nodes 2 and 4 carry 1/4 and 3/4 of a force along both rods."""
+    """An RBE3 mean has weights 1 and 3: nodes 2 and 4 carry 1/4 and 3/4 of a force along both rods."""
     rest = RODS.replace("CROD,2,1,3,4", "CROD,2,1,2,4").replace("GRID,3,,1.,0.,0.\n", "").replace("2.,.5,0.", "9.,0.,0.")
     cards = "RBE3,9,,5,12,1.,123,2,3.,\n,123,4\nFORCE,5,5,,7000.,1.,0.,0.\n"
     document = made(tmp_path, HEAD + rest + cards)

@@ -195,8 +195,8 @@ def test_arguments_out_of_range() -> None:
 
 
 def test_merit_is_that_of_siconos() -> None:
-    """Compared with an independent implementation of fc3d_compute_error: r - P_K(r - û), over the largest of |q|, |r|,
-    |u|."""
+    """The merit equals an independent implementation of fc3d_compute_error: r - P_K(r - û), over the largest of |q|,
+    |r|, |u|."""
     problem = pressed()
     r = np.random.default_rng(3).normal(size=problem.q.size)
     u = problem.velocities(r)

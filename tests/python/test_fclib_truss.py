@@ -73,7 +73,7 @@ def test_matrix_of_a_chain_is_its_compliance() -> None:
 
 
 def test_siconos_solves_them() -> None:
-    """If Siconos is installed, it solves the files too. The FCLIB collection was made with Siconos."""
+    """If Siconos, with which the FCLIB collection was made, is installed, it also solves these problems."""
     numerics = pytest.importorskip("siconos.numerics")
     for one in problems("ring", 4, number=4):
         problem = one.problem

@@ -71,7 +71,7 @@ def resting(path: np.ndarray, joint: dict[str, float], block: float) -> np.ndarr
 @pytest.mark.parametrize("model", ["coulomb_play", "coulomb_soft_play", "coulomb_soft_stops"])
 @pytest.mark.parametrize("start", [-1.0, 0.0, 0.4])
 def test_play_and_soft_stops_are_those_of_small_steps(model: str, start: float) -> None:
-    """The test uses any initial friction; without play the preload needs one more row."""
+    """The force agrees with that of small steps for any friction in the first row."""
     path = np.interp(np.linspace(0, 9, 400), np.arange(10), 1e-3 * np.array([0, .2, -.1, .5, -.6, 1, -1, .3, -.2, 1]))
     values = {name: JOINT[name] for name in MODELS[model].parameters} | {"preload": 0.0}
     loop = read_loop({"displacement_m": path, "force_N": path})

@@ -70,7 +70,8 @@ def test_numbers_have_the_units_of_the_engine(kind: AnyType) -> None:
 
 @each_type
 def test_arrays_are_those_of_the_engine(kind: AnyType) -> None:
-    """Arrays have the names of the keys of items, except for derived ones; all arrays of the engine are declared."""
+    """Arrays have the names of the keys in case files, except for derived arrays; all arrays of the engine are
+    declared."""
     truss = sj.truss.chain(3).resolve()
     tables = engine_items(truss)["joints" if isinstance(kind, JointType) else "elements"]
     given = tables[kind.section if isinstance(kind, JointType) else kind.items]

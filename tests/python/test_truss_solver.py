@@ -68,8 +68,8 @@ def test_chain_jumps_as_the_closed_form(n: int, kind: str) -> None:
 
 
 def iwan_platform_m(truss: ResolvedTruss, changes_K: np.ndarray) -> np.ndarray:
-    """Displacement of the platform of the Iwan stack [m]. Each block is a stop operator of it; the heated drive
-    balances their forces. The equation is piecewise linear, solved between its corners."""
+    """Displacement of the platform of the Iwan stack [m]. Each block is a stop operator of it; the sum of their forces
+    balances the heated drive. The equation is piecewise linear, solved between its corners."""
     links = truss.links
     rigidity = links.young_modulus_Pa * links.cross_section_area_m2
     length, expansion = links.stress_free_length_m[0], links.thermal_expansion_per_K[0]
@@ -196,8 +196,8 @@ def test_joints_that_slip_one_after_another_within_an_increment_cost_no_further_
 
 @pytest.mark.parametrize("bays", [20, 40])
 def test_tall_masts_pass_with_every_event_located(bays: int) -> None:
-    """Both joints of a level near the top slide at once. Rounding can make one look sticking; left so, it would start
-    the next step beyond its friction limit, and its status would alternate."""
+    """Both joints of a level near the top slide at once. Rounding can make one look sticking. Its next step would then
+    start beyond the friction limit, and its status would alternate."""
     located, quick = (path(generate.mast(bays), locate_events=locate) for locate in (True, False))
     assert located.complete
     # Events of the quick path happen somewhere in increments of 1/50 of a branch.
@@ -233,8 +233,8 @@ def test_energies_of_shipped_cases_balance_at_every_state(case: str) -> None:
 
 def test_what_rolls_is_of_fourth_order_in_the_increment() -> None:
     """Each step corrects the integration error of the step before it. Twice the increments leave a sixteenth of the
-    error. The reference path has eight times the most increments, so its own error is 1/4096 of theirs. No step is
-    halved for the energies."""
+    error. The reference has eight times the increments of the finest path, so its error is 1/4096 of that path's. No
+    step is halved for the energies."""
     ring = load_case(ROOT / "cases" / "trusses" / "ring_12.toml").resolve()
     ends = {k: solve.path(ring, increments_per_branch=k, energy_tolerance=1).states["displacement_m"][-1]
             for k in (20, 40, 320)}
@@ -477,9 +477,9 @@ def wandering_mast() -> dict[str, Any]:
 
 @pytest.mark.parametrize("blocks", [0, 3000])
 def test_many_joints_that_wander_are_settled_on_few_factorizations(blocks: int) -> None:
-    """Changes of many latches at once cycle on this mast, single changes take a factorization each (37 per solve). When
-    changes cycle, the step is halved. Blocks on separate bars, which slip at once and permanently, do not affect this
-    (43 per solve when every joint that had ever changed counted as cycling)."""
+    """On this mast, status changes of many latches at once cycle; single changes take a factorization each (37 per
+    solve). When changes cycle, the step is halved. Blocks on separate bars, which slip at once and permanently, do not
+    affect this (43 per solve when every joint that had ever changed counted as cycling)."""
     mast = wandering_mast()
     for i in range(blocks):
         place = [0.0, -10.0 - i, 0.0]

@@ -55,7 +55,7 @@ def result_of(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
 
 
 def check_hertz(row: dict[str, Any], radii: tuple[float, float], radius: float, accuracy: float) -> None:
-    """Check one row of ``pressed`` of the scripts: radii, Hertz force and its direction, normal and tangential
+    """Check one row of the scripts' result ``pressed``: radii, Hertz force, its direction, normal and tangential
     stiffness."""
     assert row["radii"] == pytest.approx(radii, rel=4 * EPS)
     expected = 4 / 3 * E_STAR * sqrt(radius) * row["depth"] ** 1.5

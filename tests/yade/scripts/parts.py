@@ -183,7 +183,7 @@ def fault(taken) -> str:
 
 def pressed(one: int, two: int, mover: int, distance) -> list[dict]:
     """Return the contact of two bodies at three depths in three directions. One body is at the origin, ``mover`` moves;
-    ``distance``: of the centres [m], as a function of the depth [m]."""
+    ``distance`` converts depth [m] to distance of the centres [m]."""
     rows = []
     for depth in (1e-7, 3e-6, 1e-5):
         for direction in ((0, 0, 1), (0.6, 0, -0.8), (2 / 7, 3 / 7, 6 / 7)):

@@ -110,7 +110,7 @@ def approaching():
 
 
 def crowd(energy=False):
-    """Independent joints with different loads; they fill more than one block of the stepper."""
+    """Independent joints with different loads; there are more of them than one block of the JointStepper holds."""
     reset()
     O.trackEnergy = energy
     metal, other = material(expansion=2.3e-5), material(expansion=2.2e-5)

@@ -102,7 +102,7 @@ def bumps():
 
 
 def crowd(energy=True, count=40):
-    """Journals in one shared wall mesh, with different loads; they fill more than one block of the stepper. Every
+    """Journals in one shared wall mesh, with different loads, more than one block of the JointStepper holds. Every
     fourth journal has no contact yet."""
     reset()
     O.trackEnergy = energy
@@ -144,7 +144,7 @@ def saved_in_contact(steps):
 
 
 def pushed_on(steps):
-    """Run pieces of arbitrary length and change the load between them."""
+    """Run a scene in pieces of irregular length and change the load between them."""
     for piece in (1, 2, 30, 101, 7, 400):
         O.run(piece, True)
         O.forces.setPermF(0, (5.0 - O.iter % 11, 10.0 - O.iter % 19, 0))
@@ -192,7 +192,7 @@ def laws():
 
 
 def parts():
-    """Return the result of a scene with several blocks, which two threads process."""
+    """Return the result of a scene whose blocks of joints two threads process."""
     crowd(False)
     with_stepper(1000)
     O.run(3000, True)
