@@ -5,11 +5,11 @@
     PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
 
 The table has a row for each deck of Nastran, CalculiX or Abaqus: units, whether it was imported and run, cause of a
-failure, largest displacement [m]. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference
-between the displacements of both programs, relative to the largest displacement. This comparison is linear: loads are
-multiplied by a small factor, and *STEP, NLGEOM is removed for CalculiX. ``--temperature-change`` sets ΔT for decks
-without temperatures. Every deck runs in a separate process. Exit status 1: an import or a run ended with neither a
-result nor a message.
+failure, largest displacement [m]. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of
+displacements between both programs, over the largest displacement. This comparison is linear: loads are multiplied by a
+small factor, and *STEP, NLGEOM is removed for CalculiX. ``--temperature-change`` sets ΔT for decks without
+temperatures. Every deck runs in a separate process. Exit status 1: an import or a run ended with neither a result nor a
+message.
 """
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Copies the Markdown documents of the repository as pages of the site. Folders are the same, so links stay valid.
 
-A link to a file that is not a page becomes a download. docs/index.md defines the sidebar: each section of it is a part
-of the sidebar, and the links in the section are the pages of that part, in their order.
+A link to a file that is not a page becomes a download. docs/index.md defines the sidebar: each section is a part of it,
+with the pages that the section links to, in their order.
 """
 from __future__ import annotations
 

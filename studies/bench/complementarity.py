@@ -3,9 +3,9 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/complementarity.py [--problems 10000] [--siconos 10]
 
-The problems are the six families of studies/bench/piles.py in the plane and in space, with 1 to 200 contacts. With
+Problems are of the six families of studies/bench/piles.py, in the plane and in space, with 1 to 200 contacts. With
 --siconos N, the solvers of Debian's python3-siconos also solve the first N problems of each family and dimension, and
-the merit function of Siconos judges all solutions. Writes results/bench/complementarity.md.
+Siconos' merit function judges all solutions. Writes results/bench/complementarity.md.
 """
 from __future__ import annotations
 

@@ -6,9 +6,9 @@
     cost_of_checks.py start BEFORE AFTER           the start of the command in two builds (folders for PYTHONPATH)
 
 callgrind counts the instructions, so other load of the machine does not matter. ``steps`` subtracts two runs, the
-second twice as long. To remove the checks, the functions of checks.hpp and the check of contacts in groups of four are
-made to always return success. Compiler optimisation may change the count by more than the checks do. ``start`` runs
-``--version`` and ``reduced table1``, with compiled bytecode as in an installation.
+second twice as long. To remove the checks, the functions of checks.hpp and the check of four contacts are made to
+return success. Compiler optimisation may change the count by more than the checks do. ``start`` runs ``--version`` and
+``reduced table1``, with compiled bytecode as in an installation.
 """
 from __future__ import annotations
 

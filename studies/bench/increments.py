@@ -4,8 +4,8 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/increments.py [--output DIR]
 
-Shipped trusses run with several numbers of increments per heating or cooling branch. Errors are the energy residue at
-every state, and the distance of the final nodes from those of the path with the most increments.
+Shipped trusses run with several numbers of increments per branch. Errors are the energy residue at every state, and the
+distance of the final nodes from those of the path with the most increments.
 """
 from __future__ import annotations
 

@@ -5,9 +5,9 @@
 
     PYTHONPATH=build/python:. /usr/bin/python3 studies/bench/motion_ensembles.py [--case NAME]
 
-Without dashpots the vibration after an impact never decays, and runs with small initial differences diverge. Therefore
-only distributions of results are compared. Each model runs many times with its own random heating periods from a narrow
-range. The statistical tests are those of `statejump figures`.
+Without dashpots the vibration after an impact never decays, and nearby runs diverge. Therefore only distributions of
+results are compared. Each model runs many times with its own random heating periods from a narrow range. The
+statistical tests are those of `statejump figures`.
 """
 from __future__ import annotations
 

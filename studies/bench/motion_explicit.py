@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures the convergence of the DEM, penalty contact and Moreau–Jean with the time step; writes
-results/motion/explicit.md and explicit.csv.
+"""Convergence of the DEM, penalty contact and Moreau–Jean with the time step; writes results/motion/explicit.md and
+explicit.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_explicit.py [--case NAME]
 

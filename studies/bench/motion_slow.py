@@ -5,9 +5,9 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_slow.py [--case CASE] [--runs FOLDER]
 
 A chain of 100 blocks with dashpots is heated and cooled once, with several periods. Periods named "damped" have
-critical dashpots in the links, so that the chain comes to rest between slips of its blocks. The number of DEM steps is
-proportional to the period; the number of steps of truss dynamics depends on the events. The reference of all errors is
-truss dynamics with a tolerance of 1e-12 m. DEM runs take minutes of CPU; --runs stores and reuses them.
+critical dashpots in the links, so that the chain comes to rest between slips of its blocks. The number of steps is
+proportional to the period in the DEM, but depends on the events in truss dynamics. The reference is truss dynamics with
+a tolerance of 1e-12 m. DEM runs take minutes of CPU; --runs stores and reuses them.
 """
 from __future__ import annotations
 

@@ -5,8 +5,8 @@
         [--limit 20]
 
 OLD and NEW are folders with a built package `statejump` each. Cases are the shipped trusses and the structures of
-tests/ordinary; only cases that both versions finish count. The versions run alternately in separate processes. Only the
-engine's solution of the path is timed. Prints the medians, their ratio, and the solved cases.
+tests/ordinary; only cases that both versions finish count. The versions run alternately in separate processes; only the
+path in the engine is timed. Prints medians, their ratio, and the solved cases.
 """
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures the cost of a contact step in a bore meshed with triangles and in an analytic bearing, in YADE's loop and in
-the JointStepper.
+"""Measures a contact step's cost in a meshed bore and in an analytic bearing, in YADE's loop and in the JointStepper.
 
     yade -n -x -j1 studies/bench/yade_bore.py                   # prints a table, writes results/bench/bore.md
     FACETS=1000,10000 REPORT=bore.md yade -n -x -j1 studies/bench/yade_bore.py

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes one measurement of run.py: runs n contacts in YADE for a number of steps and prints one line of JSON.
+"""One measurement of run.py: runs n contacts in YADE for a number of steps and prints one line of JSON.
 
     STATEJUMP_BENCH_VARIANT=joint STATEJUMP_BENCH_SIZE=100 yade -n -x -j1 studies/bench/yade_joints.py
 

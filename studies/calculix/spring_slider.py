@@ -3,8 +3,8 @@
 floor with frictional contact and may touch two stops with frictionless contact.
 
 Contacts are rigid in the reduced model but stiff here: STICK times as stiff as the bar in tangential direction, PUSH
-times in normal direction. Events are computed as intersections of the straight pieces of displacement over temperature,
-so they do not depend on increments. The remaining error is the contact penetration, of relative size 1/PUSH.
+times in normal direction. Events are intersections of straight pieces of displacement over temperature, so they do not
+depend on increments. The remaining error is the contact penetration, of relative size 1/PUSH.
 """
 from __future__ import annotations
 
@@ -101,8 +101,8 @@ def kinks(change: np.ndarray, moved: np.ndarray, slope: float) -> list[tuple[str
     """Return the temperature changes at which a piecewise linear path begins or ceases to slide.
 
     :param change: temperature changes, in order of time
-    :param moved: displacement at each temperature change
-    :param slope: displacement per temperature change while sliding
+    :param moved: displacement at each change
+    :param slope: displacement per change while sliding
     """
     slides = np.abs(np.diff(moved) / np.diff(change)) > 0.5 * abs(slope)
     found = []

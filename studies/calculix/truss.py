@@ -2,10 +2,10 @@
 """Computes a truss with locked joints in CalculiX: bars of type T3D2, small displacements. If all joints are sliders,
 they slip in a second deck, see :mod:`studies.calculix.truss_sliding`.
 
-CalculiX is linear, this project's solver is not. The solver's displacement u is therefore linearised at ΔT = 0 and zero
-load: r(h) = (u(h) - u(-h))/(2 h) with temperatures and loads scaled by h, extrapolated as (4 r(h/2) - r(h))/3 with h =
-STEP. The error is of order (h u/height)⁴, largest for shallow trusses. CalculiX prints seven digits. A second run gives
-seven more: equations with two auxiliary nodes make CalculiX print differences from the displacements of the first run.
+CalculiX is linear, this project's solver is not. Its displacement u is therefore linearised at ΔT = 0 and zero load:
+r(h) = (u(h) - u(-h))/(2 h) with temperatures and loads scaled by h, extrapolated as (4 r(h/2) - r(h))/3 with h = STEP.
+The error is of order (h u/height)⁴, largest for shallow trusses. CalculiX prints seven digits. A second run gives seven
+more: equations with two auxiliary nodes make CalculiX print differences from the displacements of the first run.
 """
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Computes a truss with slipping sliders in CalculiX along its temperature program, for small displacements.
+"""Computes a truss with slipping sliders in CalculiX along its temperature program (small displacements).
 
 Every bar and every slider is a separate brick along x. An equation sets the displacement of the brick's end to the
 elongation of the bar, or to the slip of the slider. The brick of a slider is ideally plastic: it is stiff up to the

@@ -21,7 +21,7 @@ def control(
     """Study how to reduce the state jump of a rib.
 
     :param jump_below: largest allowed jump of θ2 [rad]; None: half of the jump of the case
-    :param runs: size of the ensemble; None: the default. A loaded joint, which has no ensemble, needs None
+    :param runs: size of the ensemble; None: the default. Must be None for a loaded joint
     :param choices: must be empty
     :raises StatejumpError: invalid input, or a run failed
     """

@@ -4,7 +4,7 @@
 
 Every mutation edits a copy of the headers that declare the interface; the copy is compiled without static assertions.
 The guard inside a running YADE must report the mutation without build identifiers, before it calls any code of YADE. A
-crash is no refusal. An edit that changes neither sizes nor members nor virtual function tables is replaced by another.
+crash is no refusal. An edit without effect on sizes, members and virtual function tables is replaced by another.
 """
 from __future__ import annotations
 

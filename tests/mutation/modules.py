@@ -15,9 +15,9 @@ class Module:
     """Files that are mutated one at a time, and their tests, the cheapest first.
 
     :param sources: patterns of the files, relative to the repository
-    :param guards: tests of the module. For headers: test files, each compiled with the mutant. For Python: test files,
-        of which the campaign chooses those that execute a mutant. For a library: names of built test programs, into
-        which the mutant is linked; names of single tests may follow a colon
+    :param guards: tests. For headers: test files, each compiled with the mutant. For Python: test files; those that
+        execute a mutant are run. For a library: built test programs, into which the mutant is linked; names of single
+        tests may follow a colon
     :param wanted: smallest required fraction of detected mutants
     :param own: Python test files that run every mutant whose statement they execute
     """

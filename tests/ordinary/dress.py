@@ -165,7 +165,7 @@ class Joiner:
 
     def _may_detach(self, bar: str, side: int) -> bool:
         """Return whether a bar's end may move to a new node. Another bar must remain at the old node, which may not
-        belong to a joint. Of two bars coupled by a spring or latch, one must keep their common node."""
+        belong to a joint. Bars coupled by a spring or latch keep a common node."""
         node = self.made.bars[bar].ends[side]
         stays = len(self.made.at(node)) > 1 or node in self.made.fixed
         return (stays and "_of_" not in node and (bar, node) not in self.carriers

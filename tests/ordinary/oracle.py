@@ -42,8 +42,8 @@ class Verdict:
 
     :param kind: ``path``, ``overloaded``, ``mechanism``, ``unstable`` or ``undetermined``
     :param class_a: whether the continuation is always unique
-    :param load_factor: largest multiple of the loads that friction carries; inf: any multiple
-    :param start_share: estimated initial displacement over the size of the structure; NaN: not estimated
+    :param load_factor: largest multiple of the loads that friction carries; inf: any
+    :param start_share: estimated initial displacement over the structure's size; NaN: not estimated
     :param slack: whether some bar with play carries no force at the start
     """
 

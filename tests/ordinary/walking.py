@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Solves sheets and pipes that walk down an incline: all runs must finish, and the walk is compared with theory.
+"""Solves sheets and pipes that walk down an incline, and compares the walk with theory. All runs must finish.
 
     PYTHONPATH=build/python tests/ordinary/walking.py [--blocks 4 5 ...] [--friction 0.2 0.3 ...] [--kinds sheet pipe]
         [--limit 60] [--write FOLDER]
 
 A sheet of n blocks expands away from one resting block and shrinks towards another one. Because of the weight, the two
-are m blocks apart. In a cycle the sheet of length L and weight w per length on a slope β walks by m (L/n) (α ΔT - (μ
-cos β - sin β) w L/EA). With infinitely many blocks m/n becomes tan β/μ. Each case is solved with default options in a
-separate process with a time limit.
+are m blocks apart. In a cycle the sheet (length L, weight w per length, slope β) walks by m (L/n) (α ΔT - (μ cos β -
+sin β) w L/EA). With infinitely many blocks m/n becomes tan β/μ. Each case is solved with default options in a separate
+process with a time limit.
 """
 from __future__ import annotations
 

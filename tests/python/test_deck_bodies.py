@@ -107,8 +107,7 @@ def test_nodes_at_one_place_become_one(name: str, cards: str, tmp_path: Path) ->
 
 
 def test_springs_masses_and_supports_move_with_their_node(tmp_path: Path) -> None:
-    """The merged node has a spring of 1e6 N/m along y, which carries 1000 N. Node 3 is held along x, so one rod
-    elongates."""
+    """The merged node has a spring of 1e6 N/m along y with 1000 N. Node 3 is held along x, so one rod elongates."""
     cards = "SPC1,1,1,3\nCELAS2,8,1.+6,3,2\nFORCE,5,3,,1000.,0.,1.,0.\nCONM2,2,3,,4.\nCONM2,1,2,,3.\n"
     document = made(tmp_path, HEAD + RODS + END + cards + "RBAR,9,2,3,123456\n")
     joint = next(item for item in document["node"] if item["name"] == "N2")

@@ -133,7 +133,7 @@ def with_play() -> dict[str, Any]:
 @with_calculix
 @pytest.mark.parametrize("what", ["chain", "stops"])
 def test_sliders_slip_in_both_alike(what: str) -> None:
-    """Slipping sliders agree to some millionths, the effect of elastic sticking and of strains of CalculiX's bricks."""
+    """Slipping sliders agree to some millionths, because of elastic sticking and strains of CalculiX's bricks."""
     case = sj.load("cases/trusses/chain_10.toml" if what == "chain" else with_play())
     rows = {row.name: row for row in calculix.answer(case.definition).rows}
     moved = rows["largest_displacement_sliding"]

@@ -157,8 +157,8 @@ def test_smallest_spring_brackets_and_says_what_fails_beyond() -> None:
 
 
 def test_recommended_spring_passes_on_both_ensembles_and_a_smaller_one_does_not(free, monkeypatch) -> None:
-    """Made-up statistics: springs pass from 0.02 on in the ensemble; with more runs from other starts, from 0.05 on by
-    the quantile and from 0.2 on by the upper bound."""
+    """Made-up statistics: springs pass from 0.02 on in the ensemble, and with more runs from other starts from 0.05 on
+    by the quantile and from 0.2 on by the upper bound."""
 
     def measure(case, runs, progress=None) -> dict[str, float]:
         spring, other = case.torsion_spring.stiffness_N_m_per_rad, case.ensemble.seed != free.ensemble.seed

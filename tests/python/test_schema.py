@@ -169,7 +169,7 @@ def test_mistakes_of_the_other_files(mistake: str, tmp_path: Path) -> None:
 
 
 def test_a_title_may_hold_what_is_no_control_character() -> None:
-    """A no-break space is allowed in a title: it is no control character, though not printable to Python."""
+    """A title may contain a no-break space, which is no control character, though not printable to Python."""
     document = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8"))
     document["case"]["title"] = "0.1\N{NO-BREAK SPACE}mm of play"
     assert parse_case(document).case.title == document["case"]["title"]

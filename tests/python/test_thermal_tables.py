@@ -66,7 +66,7 @@ def test_what_goes_to_yade_has_the_times_of_the_table() -> None:
 
 
 def old_document() -> dict[str, Any]:
-    """Return the case of the paper's Table 1 in an old file format, in which the section of the DEM held the period."""
+    """Return the paper's Table 1 in an old file format, in which the DEM's section held the period."""
     data = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8"))
     data["dem"]["period_s"] = data["thermal"].pop("period_s") / 4
     return data

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Iwan joints in cases, drawings and commands. Identification writes a section that a case accepts, and finds the same
-joint from the computed loop."""
+"""Iwan joints in cases, drawings and commands. Identification writes a section that a case accepts, and identifies the
+case's loop."""
 from __future__ import annotations
 
 import tomllib

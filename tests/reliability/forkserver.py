@@ -78,9 +78,9 @@ class Forkserver:
     ) -> Ended:
         """Run the command.
 
-        :param folder: working folder of the run
+        :param folder: working folder
         :param more: environment variables besides those of the server
-        :param kill_after_s: time until the process group is killed [s]
+        :param kill_after_s: time until its process group is killed [s]
         """
         pid = self._ask({"folder": str(folder), "words": list(words), "more": dict(more), "said": str(self._said)})
         if kill_after_s is not None:

@@ -27,7 +27,7 @@ def archive_version(path: Path) -> int | None:
 
 
 class ForeignFile(RuntimeError):
-    """Error: a file was saved by another version of YADE.
+    """A file was saved by another version of YADE.
 
     :param file: the file
     :param version: version of its archive format

@@ -25,8 +25,8 @@ def _taken(jump: Groups, without: float, larger: bool) -> list[np.ndarray]:
 def measure(jump: Groups, without: float, larger: bool) -> str:
     """Return the verdict on "the measure reduces the jump"; the rule is ``MEASURE_RULE``.
 
-    :param without: value that the parameter has without the measure
-    :param larger: whether the measure increases the parameter (else it decreases it)
+    :param without: parameter value without the measure
+    :param larger: whether the measure increases the parameter
     """
     taken = _taken(jump, without, larger)
     before = jump.at(without)
@@ -48,11 +48,11 @@ MEASURE_RULE = (
 class Measure:
     """One measure and its effect on the jump.
 
-    :param without: value of the parameter without the measure
+    :param without: parameter value without the measure
     :param larger: whether the measure increases the parameter
     :param label: label of the parameter
     :param reduces: reason to print if the measure reduces the jump
-    :param fails: reason to print if it does not: a function of the mean jumps with and without the measure [rad]
+    :param fails: reason to print if it does not: a function of the mean jumps [rad] with and without it
     """
 
     name: str

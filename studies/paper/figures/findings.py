@@ -27,7 +27,7 @@ def findings_of(
     case: UmbrellaCase, done: Sequence[tuple[Study, Sequence[Variant]]], base: Variant,
     dem_ensemble: ensembles.EnsembleOfRuns, contacts: tuple[FirstContact, ...], stiffness: Groups,
 ) -> Findings:
-    """Collect the results of the runs as input of the claims.
+    """Return the results of the runs, the input of the claims.
 
     :param done: the studies of Figures 14 to 16 with their runs
     :param base: runs of the unchanged case

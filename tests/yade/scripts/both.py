@@ -66,8 +66,8 @@ def rows():
 
 
 def run_both(build, steps, substeps, go=in_one_go, record=None):
-    """Run a scene with YADE's loop and with the JointStepper; return how many steps YADE's loop made in each run, and
-    what differs. ``record``: pair of bodies whose contact is recorded."""
+    """Run a scene with YADE's loop and with the JointStepper; return the steps that YADE's loop made, and what differs.
+    ``record``: pair of bodies to record."""
     found = {}
     for way in ("ordinary", "stepper"):
         build()
@@ -124,7 +124,7 @@ def erased(number):
 
 
 def error_of(build, steps=2000, substeps=100):
-    """Return what ends a run with YADE's loop and with the JointStepper: class, text, step and time of the error, its
+    """Return what ends a run in YADE's loop and in the JointStepper: class, text, step and time of the error, its
     fault."""
     found = []
     for way in ("ordinary", "stepper"):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""NaN and other invalid numbers in YADE's loop and the JointStepper. Usage: `silence.py PART`, with the parts listed at
-the end.
+"""Invalid numbers in YADE's loop and the JointStepper. Usage: `silence.py PART`, with the parts listed at the end.
 
 A change is made before the first step, between two runs, or by a PyRunner during a run, at its step 60.
 """
