@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the manual page and the completion of shells, both of the commands themselves.
+"""Writes the manual page and the shell completion from the definitions of the commands.
 
-    PYTHONPATH=build/python /usr/bin/python3 cmake/shell_files.py FOLDER
+PYTHONPATH=build/python /usr/bin/python3 cmake/shell_files.py FOLDER
 """
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHELLS = {"bash": NAME, "zsh": f"_{NAME}", "fish": f"{NAME}.fish"}
 
 
 def escaped(text: str) -> str:
-    """Return text as troff takes it: no backslash, no line that begins with a control character."""
+    """Return text escaped for troff: it has no backslash, and no line begins with a control character."""
     return re.sub(r"^([.'])", r"\\&\1", text.replace("\\", r"\e").replace("-", r"\-"), flags=re.MULTILINE)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``pip install .``: a wheel of the reduced models, without YADE (PEP 517).
+"""Build backend (PEP 517) of ``pip install .``: makes a wheel of the reduced models, without YADE.
 
-CMake compiles and decides what is installed where; this file packs it. Generator, compiler and flags are those of
-CMake's own variables: CMAKE_GENERATOR, CXX, CXXFLAGS, CMAKE_PREFIX_PATH, CMAKE_BUILD_PARALLEL_LEVEL.
+CMake compiles and installs into a folder; this file packs the folder. CMake's own variables choose generator, compiler
+and flags: CMAKE_GENERATOR, CXX, CXXFLAGS, CMAKE_PREFIX_PATH, CMAKE_BUILD_PARALLEL_LEVEL.
 """
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def project() -> dict[str, Any]:
 
 
 def _has_pybind11() -> bool:
-    """Return whether CMake finds a pybind11 for this Python without pip: that of the distribution, or of conda."""
+    """Return whether CMake finds a new enough pybind11 without pip: in this Python's prefix, or in the system."""
     needed = PYBIND11.get(sys.version_info[1], PYBIND11[max(PYBIND11)])
     for header in (Path(prefix, "include/pybind11/detail/common.h") for prefix in (sys.prefix, "/usr/local", "/usr")):
         if header.is_file():
@@ -47,7 +47,7 @@ def _has_pybind11() -> bool:
 
 
 def get_requires_for_build_wheel(config_settings: Settings = None) -> list[str]:
-    """Return what pip has to fetch for the build: tools that this machine has are not fetched."""
+    """Return the build tools that pip has to fetch, because they are not installed on this machine."""
     tools = {"cmake>=3.25": which("cmake"), "ninja": which("ninja"), "pybind11>=2.13": _has_pybind11()}
     return [name for name, there in tools.items() if not there]
 
@@ -79,7 +79,7 @@ def _about() -> dict[str, str]:
 
 
 def pack(build: Path, folder: Path) -> str:
-    """Install a compiled tree into a wheel in the folder; return the wheel's name."""
+    """Pack a compiled tree as a wheel into the folder; return the file name of the wheel."""
     about = project()
     stem = f"{about['name']}-{about['version']}"
     name = f"{stem}-{_tag()}.whl"
@@ -112,7 +112,7 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
 
 
 class UnsupportedOperation(Exception):
-    """What PEP 517 has for a back-end that makes no source distribution."""
+    """Exception that PEP 517 prescribes for a backend that makes no source distribution."""
 
 
 def build_sdist(sdist_directory: str, config_settings: Settings = None) -> str:

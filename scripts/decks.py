@@ -4,11 +4,12 @@
 
     PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
 
-A row for each deck of Nastran, CalculiX or Abaqus: units, whether it was imported and run, cause of a failure, largest
-displacement [m]. If ``ccx`` is installed, decks of CalculiX also have the largest difference of a displacement from
-that of CalculiX, relative to the largest one. Both programs are then linear: loads are multiplied by a small factor,
-and *STEP, NLGEOM is removed for CalculiX. ``--temperature-change`` sets ΔT for decks without temperatures. Every deck
-runs in a separate process. Exit status 1: an import or a run ended with neither a result nor a message.
+The table has a row for each deck of Nastran, CalculiX or Abaqus: units, whether it was imported and run, cause of a
+failure, largest displacement [m]. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of
+displacements between both programs, over the largest displacement. This comparison is linear: loads are multiplied by a
+small factor, and *STEP, NLGEOM is removed for CalculiX. ``--temperature-change`` sets ΔT for decks without
+temperatures. Every deck runs in a separate process. Exit status 1: an import or a run ended with neither a result nor a
+message.
 """
 from __future__ import annotations
 
@@ -91,8 +92,8 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
 
 
 def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object, str | None]:
-    """Return units, document, case and failure of a deck, which does not state its units. Among units that give a case,
-    those with the fewest implausible numbers are chosen."""
+    """Return units, document, case and failure of a deck. A deck does not state its units: of the unit systems that
+    give a case, the one with the fewest implausible numbers is chosen."""
     import statejump as sj
     from statejump.core.errors import StatejumpError
     from statejump.kinds.truss.importing import checked, hints
@@ -110,7 +111,7 @@ def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object, str | Non
 
 
 def _difference(path: Path, deck: Deck, made: dict, length_m: float) -> str:
-    """Return the difference to CalculiX, or the reason why the linear parts cannot be compared."""
+    """Return the relative difference to CalculiX's displacements, or the reason why they cannot be compared."""
     from statejump.core.errors import StatejumpError
 
     try:
@@ -129,7 +130,7 @@ def _displacements(run: object) -> np.ndarray:
 
 
 def _small(made: dict) -> dict[str, np.ndarray]:
-    """Return the displacements of a case for small loads, divided by the factor of the loads."""
+    """Return the displacements by node for loads times a small factor, divided by this factor."""
     import statejump as sj
 
     factor = 1.0 if "expansion" in made else SMALL  # temperature-dependent coefficients are not linear
@@ -146,7 +147,7 @@ def _small(made: dict) -> dict[str, np.ndarray]:
 
 
 def in_process(path: Path, folder: Path, arguments: Sequence[str], seconds: float) -> Row:
-    """Import and run a deck in a separate process, which may crash."""
+    """Import and run a deck in a separate process, because the run may crash."""
     name = str(path.relative_to(folder))
     command = [sys.executable, __file__, str(folder), "--one", str(path), *arguments]
     try:

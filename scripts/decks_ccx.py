@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a deck of CalculiX as a linear analysis and compares displacements."""
+"""Runs a CalculiX deck as a linear analysis and compares its displacements with this project's."""
 from __future__ import annotations
 
 import re
@@ -24,10 +24,10 @@ def installed() -> bool:
 
 
 def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Mapping[str, str]) -> str:
-    """Return the largest difference of a displacement relative to the largest one, or why it is missing.
+    """Return the largest difference between displacements over the largest displacement, or why it is missing.
 
     :param step: number of the step that was imported
-    :param ours: displacements by node name in the case
+    :param ours: displacements of this project by node name in the case
     :param names: node names in the case by node number in the deck
     """
     if not step:
@@ -55,7 +55,7 @@ def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Map
 
 
 def printing(text: str, step: int, nodes: list[int]) -> str:
-    """Return a linear deck that ends with a given step and prints its displacements."""
+    """Return the deck without NLGEOM, ended after a given step, with that step's displacements as output."""
     made: list[str] = []
     number, skips = 0, False
     for line in text.splitlines():

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results of the shipped cases on two machines, releases or builds, value by value.
+"""Compares the results of the shipped cases on two machines, releases or builds, value by value.
 
     PYTHONPATH=build/python scripts/shipped_results.py run FOLDER [--model dem] [--case NAME ...] [--yade-loop]
     PYTHONPATH=build/python scripts/shipped_results.py compare FIRST SECOND
 
 ``run`` writes a result file of every shipped case that the model supports to FOLDER/MODEL/CASE. Existing results are
-kept, so an interrupted call can be continued. With ``--yade-loop`` YADE's own loop makes the steps of the DEM,
-otherwise the stepper of the case. ``compare`` prints a Markdown table with a row per case and model: count of numbers,
-count of numbers that differ in any bit, and the column with the largest difference, with this difference and the
-largest value. Exit status 1: a number differs, or a file is missing on one side.
+kept, so an interrupted call can be continued. With ``--yade-loop``, YADE's own loop runs the DEM; otherwise the stepper
+that the case names. ``compare`` prints a Markdown table with a row per case and model: count of numbers, count of
+numbers that differ in any bit, the column with the largest difference, this difference, and the column's largest value.
+Exit status 1: a number differs, or one folder lacks a file.
 """
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def run(folder: Path, models: list[str], names: list[str], changes: dict[str, st
 
 
 def numbers(made: Run) -> dict[str, np.ndarray]:
-    """Return every number of a run by a name: columns, times of events, summary."""
+    """Return the numbers of a run by name: columns, times of events, summary."""
     found = {name: np.asarray(column.values) for group in GROUPS for name, column in getattr(made, group).items()}
     found["times of events"] = np.array([event.time_s for event in made.events])
     found["summary"] = np.array(list(made.summary.values()))
@@ -66,7 +66,7 @@ def numbers(made: Run) -> dict[str, np.ndarray]:
 
 
 def row(name: str, first: Run, second: Run) -> tuple[list[str], bool]:
-    """Return the comparison of a case and model as a row of :data:`HEADER`, and whether all bits are equal."""
+    """Return a row of :data:`HEADER` that compares two runs of a case and model, and whether all bits are equal."""
     one, other = numbers(first), numbers(second)
     count = differing = 0
     worst, worst_column = 0.0, ""

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Programs that use the package without being part of it: studies of the paper, measurements, generators of pages."""
+"""Programs that use the package but do not belong to it: studies of the paper, benchmarks, generators of pages."""

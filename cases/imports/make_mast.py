@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The example files of the tutorial "From a deck to pointing error": what an engineer would bring from elsewhere.
+"""Writes the example input files of the tutorial "From a deck to pointing error", as an engineer would bring them.
 
-    /usr/bin/python3 cases/imports/make_mast.py       writes them beside itself
+        /usr/bin/python3 cases/imports/make_mast.py       writes the files beside this program
 
 mast.bdf           Nastran bulk data of a mast of 100 bars and 33 nodes, ten bays with a triangle as cross-section. The
                    face of longerons 1 and 2 carries a flat array antenna. It alone has crossed diagonals, in seven
@@ -41,12 +41,13 @@ def corner(longeron: int, level: int) -> np.ndarray:
 
 
 def name(longeron: int, level: int) -> int:
-    """Return the number of a node: 203 is longeron 2, level 3."""
+    """Return the number of a node on a longeron: 203 is longeron 2, level 3."""
     return 100 * longeron + level
 
 
 def bars() -> dict[int, tuple[int, int]]:
-    """Return ends by element number: 1xx to 3xx longerons, 4xx battens, 5xx diagonals, 6xx those that cross them."""
+    """Return the end nodes by element number: 1xx to 3xx longerons, 4xx battens, 5xx diagonals, 6xx crossing diagonals.
+    """
     found = {}
     for level, longeron in product(range(BAYS + 1), (1, 2, 3)):
         following = longeron % 3 + 1
@@ -74,7 +75,7 @@ def deck() -> str:
 
 
 def members() -> list[list[str | float]]:
-    """Return the rows of mast_members.csv: a round bar shows the Sun sin(angle between the two)/pi of its surface."""
+    """Return the rows of mast_members.csv. The sunlit fraction of a round bar is sin(angle between bar and Sun)/pi."""
     rows: list[list[str | float]] = []
     for number, ends in bars().items():
         way = np.subtract(*(corner(*divmod(end, 100)) for end in ends))
@@ -84,7 +85,8 @@ def members() -> list[list[str | float]]:
 
 
 def loop() -> tuple[np.ndarray, np.ndarray]:
-    """Return displacement [m] and force [N] of the latch: a spring k behind a slide with dry friction between stops."""
+    """Return displacement [m] and force [N] of the latch: a spring k in series with a dry-friction slider between
+    stops."""
     corners = np.array([0, 1, -1, 1, -1, 1]) * 3e-5
     path = np.interp(np.linspace(0, len(corners) - 1, 501), np.arange(len(corners)), corners)
     k, friction, slide, force = LATCH["stiffness"], LATCH["friction"], 0.0, []

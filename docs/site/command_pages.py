@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Page of the commands' own help texts, and the check that docs/reference/commands.md has every command."""
+"""Makes the page of the commands' help texts, and checks that docs/reference/commands.md has every command."""
 from __future__ import annotations
 
 import re

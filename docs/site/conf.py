@@ -33,7 +33,7 @@ html_copy_source = False
 
 
 def setup(app: Any) -> None:
-    """Docstrings are plain text with a few roles: |x| in them is a magnitude, not a substitution."""
+    """Set up docstrings as plain text with a few roles: |x| is the magnitude of x, not a substitution of Sphinx."""
 
     def plain(app: Any, what: str, name: str, found: Any, options: Any, lines: list[str]) -> None:
         lines[:] = [line.replace("|", "\\|") for line in lines]

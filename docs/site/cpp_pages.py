@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pages of the C++ headers, one per subject: every header under its own heading, its symbols in its own order."""
+"""Makes the pages of the C++ headers, one per subject: each header has a heading, with its symbols in source order."""
 from __future__ import annotations
 
 import xml.etree.ElementTree as xml
@@ -77,7 +77,7 @@ def _heading(text: str, mark: str) -> str:
 
 
 def pages(repository: Path, members: Path) -> dict[str, str]:
-    """Return the pages: name to text, ``index`` among them.
+    """Return the texts of the pages by name; the page ``index`` links the others.
 
     :raises SystemExit: a header belongs to no subject or to two
     """

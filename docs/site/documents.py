@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Markdown documents of the repository as pages of the site: the same folders, so the same links.
+"""Copies the Markdown documents of the repository as pages of the site. Folders are the same, so links stay valid.
 
-A link to a file that is no page becomes a download. The way through the site is docs/index.md: each of its
-sections is a part of the sidebar, the links in it, in their order, are its pages.
+A link to a file that is not a page becomes a download. docs/index.md defines the sidebar: each section is a part of it,
+with the pages that the section links to, in their order.
 """
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ START = Path("docs/index.md")
 
 
 def documents(repository: Path) -> list[Path]:
-    """Return the documents, from the repository's root. The README is the start page of the repository only."""
+    """Return the paths of the documents in the repository. The README is not a page of the site."""
     found = [Path(name) for name in ("CHANGELOG.md", "CONTRIBUTING.md")]
     for folder in "docs", "results":
         found += sorted(path.relative_to(repository) for path in (repository / folder).rglob("*.md"))
@@ -25,14 +25,14 @@ def documents(repository: Path) -> list[Path]:
 
 
 def links(text: str) -> Iterator[str]:
-    """Yield the targets of the links and pictures outside of fenced blocks, pictures inside links too."""
+    """Yield the targets of links and pictures, also of pictures inside links. Fenced code blocks are skipped."""
     for match in LINK.finditer(FENCE.sub("", text)):
         yield match[3]
         yield from links(match[2])
 
 
 def local_target(document: Path, target: str) -> Path | None:
-    """Return the file that a link leads to, from the repository's root; None: elsewhere, or on the same page."""
+    """Return the path in the repository of the file that a link targets; None: another site, or the same page."""
     if re.match(r"[a-z]+:|#", target):
         return None
     parts: list[str] = []
@@ -45,7 +45,7 @@ def local_target(document: Path, target: str) -> Path | None:
 
 
 def stage(repository: Path, source: Path) -> list[str]:
-    """Copy documents and their pictures below ``source``; return what is wrong with links, one sentence each."""
+    """Copy documents and their pictures into ``source``; return one sentence for each broken link."""
     pages = documents(repository)
     wrong = []
     for page in pages:
@@ -90,9 +90,9 @@ def up(page: Path) -> str:
 
 
 def add_way(source: Path, generated: dict[str, list[tuple[str, str]]]) -> None:
-    """Give the start page its tables of contents: what its sections link to, then the generated pages by section.
+    """Add tables of contents to the start page: the pages that its sections link to, then generated pages by section.
 
-    :param generated: heading of a section to (title, page) of the pages that it has besides
+    :param generated: additional pages (title, page) by the heading of the section
     """
     text = (source / START).read_text(encoding="utf-8")
     listed: list[str] = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pages of the reference made of definitions: keys of case files, and the table of symbols with links."""
+"""Makes the reference pages of definitions: the keys of case files, and the table of symbols with links."""
 from __future__ import annotations
 
 import re
@@ -24,7 +24,7 @@ def heading(text: str, mark: str) -> str:
 
 
 def sections(name: str) -> Iterator[tuple[str, dict[str, Any], bool]]:
-    """Yield the sections of a kind of file: name, schema, whether it is a list of tables."""
+    """Yield the sections of a kind of file: name, schema, and whether the section is a list of tables."""
     for section, found in schema.schema(name)["properties"].items():
         yield section, found.get("items", found), "items" in found
 
@@ -34,7 +34,7 @@ def _escaped(text: str) -> str:
 
 
 def keys_page() -> str:
-    """Return the page of all keys of case and campaign files, from the schemas."""
+    """Return the page of all keys of case and campaign files, made from the schemas."""
     lines = [heading("Keys of case files", "="), "Units are in the names; values in brackets are units.\n"]
     for name in schema.names():
         if name == schema.ANY:
@@ -64,8 +64,8 @@ def key_targets() -> dict[str, list[tuple[str, str]]]:
 
 
 def cpp_targets(members: Path) -> dict[str, list[str]]:
-    """Return the qualified names of all C++ members by their last part, without those of templates: Sphinx knows
-    such a member by its arguments only, and templates repeat what is documented where it belongs."""
+    """Return the qualified names of all C++ members by their last part. Members of templates are left out: Sphinx finds
+    them only by their arguments, and they repeat documentation from elsewhere."""
     found: dict[str, list[str]] = {}
     for compound in xml.parse(members / "index.xml").getroot():
         if compound.get("kind") not in ("class", "struct", "namespace"):
@@ -86,7 +86,7 @@ def cpp_targets(members: Path) -> dict[str, list[str]]:
 
 
 def yade_targets(page: str) -> dict[str, list[str]]:
-    """Return the classes of every attribute of the plugin, from its page."""
+    """Return the classes that have each attribute of the plugin, read from the page of classes."""
     found: dict[str, list[str]] = {}
     current = ""
     for kind, name in re.findall(r"\.\. py:(class|attribute|function):: (\w+)", page):
@@ -113,9 +113,9 @@ def _rows(text: str) -> Iterator[list[list[str]]]:
 
 
 def symbols_page(document: str, members: Path, yade_page: str) -> str:
-    """Return the tables of docs/reference/symbols.md with every name linked to where it is documented.
+    """Return the tables of docs/reference/symbols.md with a link from every name to its documentation.
 
-    :raises SystemExit: a name is documented nowhere
+    :raises SystemExit: a name has no documentation
     """
     keys, cpp, yade = key_targets(), cpp_targets(members), yade_targets(yade_page)
     lost: list[str] = []
@@ -161,7 +161,7 @@ def symbols_page(document: str, members: Path, yade_page: str) -> str:
 
 
 def columns_page() -> str:
-    """Return the page of the columns of histories: every kind's own, with the units that their names end in."""
+    """Return the page of the columns of histories, by kind of case, with the units that end the column names."""
     lines = [heading("Columns of histories", "="),
              "The columns of ``*_history.csv`` and of ``Run.frame()``, in their order; the unit ends the name. What "
              "belongs to several items has the item's name in brackets, a vector its axis behind them: "
@@ -176,7 +176,7 @@ def columns_page() -> str:
 
 
 def history_columns() -> set[str]:
-    """Return the columns of histories and the arguments that the engine's modules document."""
+    """Return the names of columns and arguments that the docstrings of the engine's modules contain."""
     found = {column for name in kinds.names() for column in kinds.kind(name).COLUMNS}
     found.update(column.name for joint in JOINTS for column in joint.columns)
     found.update(column.name for element in ELEMENTS for column in element.columns)

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the documentation: documents of the repository, their notebooks, generated references.
+"""Builds the documentation site: documents of the repository, notebooks of the tutorials, generated references.
 
     /usr/bin/python3 docs/site/make.py --build build
 
-writes build/docs/html. The test adds ``--to FOLDER``, so that the site of users stays as it is. Tutorials show the
-outputs that their notebooks in docs/tutorials hold; notebooks.py runs them.
+writes build/docs/html. The test adds ``--to FOLDER``, so that an existing site is not overwritten. Tutorials show the
+outputs stored in the notebooks of docs/tutorials; notebooks.py executes these notebooks.
 
-References: C++ headers by Doxygen, YADE classes by importing the plugin, Python by autodoc, keys of case files from the
-schemas, commands from themselves. A warning is an error; so are a link that leads nowhere, a page that the way through
-the site does not reach, and a name in the table of symbols that is documented nowhere.
+Sources of the references: Doxygen for C++ headers, the imported plugin for YADE classes, autodoc for Python, the
+schemas for keys of case files, the help texts for commands. Errors are: a warning, a broken link, a page missing from
+the sidebar, and a name in the table of symbols without documentation.
 """
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def heading(text: str, mark: str = "=") -> str:
 
 
 def doxygen(folder: Path) -> Path:
-    """Run Doxygen on the public headers; return the folder of its XML."""
+    """Run Doxygen on the public headers; return the folder of the XML files."""
     inputs = " ".join(f'"{REPOSITORY / place}"' for place in cpp_pages.FOLDERS)
     settings = f'{DOXYFILE}INPUT = {inputs}\nOUTPUT_DIRECTORY = "{folder}"\n'
     settings += f"STRIP_FROM_PATH = {inputs}\n"
@@ -75,7 +75,7 @@ def doxygen(folder: Path) -> Path:
 
 
 def python_pages(build: Path) -> dict[str, str]:
-    """Return the pages of the Python package: name to text, one page per sub-package and ``index`` for the package."""
+    """Return the texts of the Python pages by name: one page per sub-package, and ``index`` for the package."""
     package = build / "python" / "statejump"
     found = [module for module in pkgutil.walk_packages([str(package)], "statejump.")
              if not module.name.rsplit(".", 1)[1].startswith("_")]
@@ -96,7 +96,7 @@ def python_pages(build: Path) -> dict[str, str]:
 
 
 def tutorial_pages(source: Path) -> None:
-    """Replace the tutorials among the staged documents by their notebooks with outputs."""
+    """Replace the tutorials among the copied documents by their notebooks with outputs."""
     for path in notebooks.tutorials():
         target = source / path.relative_to(REPOSITORY)
         # The staged text, not the repository's: its links are those of the site.
@@ -109,7 +109,7 @@ def tutorial_pages(source: Path) -> None:
 
 
 def static_files(folder: Path) -> None:
-    """Write the style and copy what is needed of Debian's MathJax: formulas are set without a network."""
+    """Write the style sheet and copy the needed files of Debian's MathJax, so that formulas need no network."""
     folder.mkdir(parents=True)
     (folder / "statejump.css").write_text(STYLE, encoding="utf-8")
     for part in MATHJAX_PARTS:
@@ -122,7 +122,8 @@ def static_files(folder: Path) -> None:
 
 
 def check_references(site: Path) -> None:
-    """End the program if a reference of the table of symbols leads nowhere: Sphinx shows it as text without a word."""
+    """End the program if a reference in the table of symbols is broken. Sphinx would show it as text, without a
+    warning."""
     names = (site / REFERENCE / "names.html").read_text(encoding="utf-8")
     for domain, page in (("cpp", r"cpp/\w+"), ("py", "yade")):
         wanted = len(re.findall(f'class="xref {domain} ', names))

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tutorials as Jupyter notebooks: the Markdown page is the source, the notebook is made from it.
+"""Makes a Jupyter notebook from the Markdown page of each tutorial.
 
     /usr/bin/python3 docs/site/notebooks.py                      writes docs/tutorials/NAME.ipynb, without outputs
     /usr/bin/python3 docs/site/notebooks.py --run build NAME...  with outputs, and the last figure as NAME.png
@@ -49,7 +49,8 @@ def tutorials() -> list[Path]:
 
 
 def notebook(text: str) -> NotebookNode:
-    """Return the notebook of a page, without outputs. What a cell must print is in its metadata, ``prints``."""
+    """Return the notebook of a page, without outputs. The metadata ``prints`` of a cell holds the lines it must print.
+    """
     cells: list[NotebookNode] = []
     shown: list[str] = []
 
@@ -104,7 +105,7 @@ def stored(made: NotebookNode) -> str:
 def executed(made: NotebookNode, build: Path) -> NotebookNode:
     """Run a notebook in an empty folder, with the package of a build tree; return it with outputs.
 
-    :raises SystemExit: a cell fails, or does not print what its page says
+    :raises SystemExit: a cell fails, or does not print the lines that its page shows
     """
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError
@@ -149,7 +150,7 @@ def _printed(cell: NotebookNode) -> str:
 
 
 def _missing(wanted: list[str], printed: str) -> str | None:
-    """Return the first line that is not there, in order; None: all are."""
+    """Return the first wanted line that was not printed in this order; None: all were printed."""
     lines = iter(printed.splitlines())
     for line in wanted:
         if not any(line in given for given in lines):
@@ -191,8 +192,8 @@ def page(made: NotebookNode, name: str, folder: Path) -> str:
 
 
 def _joined(outputs: list[NotebookNode]) -> list[NotebookNode]:
-    """Return outputs with what was printed between two others as one, standard output before standard error: in which
-    pieces the two arrive depends on the kernel."""
+    """Return the outputs with adjacent printed pieces joined, standard output before standard error. The kernel splits
+    printed text differently in each run."""
     found: list[NotebookNode] = []
     for is_stream, some in itertools.groupby(outputs, lambda output: output.output_type == "stream"):
         if not is_stream:
@@ -228,7 +229,7 @@ def without_outputs(made: NotebookNode) -> NotebookNode:
 
 
 def shared(made: NotebookNode) -> NotebookNode:
-    """Return an executed notebook for the repository: without times, versions, folders and YADE's start message."""
+    """Return an executed notebook to commit: times, versions, folders and YADE's start message are removed."""
     made.metadata["language_info"] = {"name": "python"}
     for cell in made.cells:
         cell.metadata.pop("execution", None)
@@ -241,9 +242,9 @@ def shared(made: NotebookNode) -> NotebookNode:
 
 
 def with_outputs(made: NotebookNode, stored_file: Path) -> NotebookNode:
-    """Return a notebook with the outputs of a stored one.
+    """Return a notebook with the outputs of a stored notebook.
 
-    :raises SystemExit: the cells differ
+    :raises SystemExit: their cells differ
     """
     kept = [cell for cell in nbformat.read(stored_file, as_version=4).cells if cell.cell_type == "code"]
     cells = [cell for cell in made.cells if cell.cell_type == "code"]
@@ -262,7 +263,7 @@ def last_figure(made: NotebookNode) -> bytes | None:
 
 
 def write(source: Path, build: Path | None) -> None:
-    """Write the notebook of a page; with a build tree, execute it and write its last figure too."""
+    """Write the notebook of a page; if a build tree is given, execute it and write its last figure too."""
     target = source.with_suffix(".ipynb")
     made = notebook(source.read_text(encoding="utf-8"))
     if build is not None:

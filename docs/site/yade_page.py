@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YADE script: writes the page of the plugin's classes, from the texts that they carry, to $STATEJUMP_PAGE."""
+"""YADE script: writes the page of the plugin's classes, from their docstrings, to $STATEJUMP_PAGE."""
 import os
 import re
 import textwrap

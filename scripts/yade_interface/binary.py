@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YADE's libraries as files: sizes of objects, tables of virtual functions, stored names (x86-64 ELF)."""
+"""Reads YADE's libraries as x86-64 ELF files: sizes of objects, virtual function tables, stored names."""
 from __future__ import annotations
 
 import re
@@ -56,7 +56,7 @@ class Library:
         return result
 
     def bytes_at(self, address: int, size: int) -> bytes:
-        """Return the loaded bytes at an address; empty if nothing is loaded there."""
+        """Return the bytes that the library has at a load address; empty if nothing is loaded there."""
         for begin, place, length in self.mapped:
             if begin <= address < begin + length:
                 return self.data[place + address - begin: place + min(address - begin + size, length)]
@@ -98,7 +98,7 @@ class Libraries:
     def allocated_size(self, class_name: str) -> int | None:
         """Return the size [bytes] that Create<Class> passes to operator new.
 
-        It is the operand of the last ``mov edi, constant`` before the first call.
+        The size is the operand of the last ``mov edi, constant`` before the first call.
         """
         found = self.find(f"_ZN4yade{len(class_name) + 6}Create{class_name}Ev")
         if not found:
@@ -116,7 +116,7 @@ class Libraries:
 
     @staticmethod
     def entries(library: Library, symbol: Symbol) -> list[str]:
-        """Return the entries of a table: symbols, or numbers if there is no symbol."""
+        """Return the entries of a virtual function table: symbols, or numbers where no symbol exists."""
         entries = []
         for address in range(symbol.address, symbol.address + symbol.size, 8):
             kind, index, addend = library.relocations().get(address, (0, 0, 0))
@@ -179,7 +179,7 @@ class Libraries:
         return (match[1] or match[2])[0] if match else None
 
     def missing_symbols(self, plugin: Path) -> list[str]:
-        """Return the symbols of YADE that a built plugin requires and no library here defines."""
+        """Return the symbols of YADE that a built plugin requires but that no library on this machine defines."""
         mine = Library(plugin)
         return sorted(one.name for one in mine.symbols
                       if not one.defined and "4yade" in one.name and not self.find(one.name))

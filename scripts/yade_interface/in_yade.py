@@ -24,7 +24,7 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def read(address: int, size: int) -> bytes | None:
-    """Return bytes of this process; None if the kernel refuses to read them (without a crash)."""
+    """Return bytes of this process at an address; None if the kernel refuses to read them. It never crashes."""
     if address <= 0 or _libc.write(_pipe[1], ctypes.c_void_p(address), ctypes.c_size_t(size)) <= 0:
         return None
     data = os.read(_pipe[0], size)
@@ -32,7 +32,7 @@ def read(address: int, size: int) -> bytes | None:
 
 
 def word(address: int) -> int:
-    """Return the word at an address; 0 if it cannot be read."""
+    """Return the memory word at an address; 0 if it cannot be read."""
     data = read(address, WORD)
     return int.from_bytes(data, "little") if data else 0
 
@@ -49,14 +49,14 @@ def text(address: int) -> str:
 
 
 def type_name(thing: int) -> str:
-    """Return the mangled class name of an object with virtual functions; empty for other objects."""
+    """Return the mangled class name of the object at an address; empty if it has no virtual functions."""
     table = word(thing) if thing % WORD == 0 else 0
     information = word(table - WORD) if table else 0
     return text(word(information + WORD)) if information else ""
 
 
 def is_a(thing: int, class_name: str) -> bool:
-    """Return whether the object at an address is of exactly this class of YADE."""
+    """Return whether the object at an address is exactly of this class of YADE, not of a derived class."""
     return type_name(thing) == f"N4yade{len(class_name)}{class_name}E"
 
 
@@ -73,7 +73,8 @@ def demangled(names: list[str]) -> list[str]:
 
 
 def getters() -> tuple[list[list[Any]], int]:
-    """Return class, name, offset and type of every plain attribute of the examined classes, and their number."""
+    """Return class, name, offset and type of plain attributes of the examined classes; also the number in all classes.
+    """
     found, count = [], 0
     for class_name, python_class in sorted(vars(wrapper).items()):
         if not isinstance(python_class, type):
@@ -111,14 +112,14 @@ def size_of(class_name: str) -> int:
 
 
 def places(start: int, class_name: str, holds: Callable[[int], bool], step: int = WORD) -> list[int]:
-    """Return the offsets in an object at which a word (or a part of one) satisfies ``holds``."""
+    """Return the offsets in an object at which a memory word (or a part of a word) satisfies ``holds``."""
     size = size_of(class_name)
     data = read(start, size) or b""
     return [i for i in range(0, size - step + 1, step) if holds(int.from_bytes(data[i: i + step], "little"))]
 
 
 def values() -> list[list[Any]]:
-    """Return class, name, offset and type of members that only values reveal, if found exactly once."""
+    """Return class, name, offset and type of members found by a search for their values, if found exactly once."""
     functors = {"bound": Bo1_Sphere_Aabb(), "geometry": Ig2_Sphere_Sphere_ScGeom(),
                 "physics": Ip2_FrictMat_FrictMat_FrictPhys(), "law": Law2_ScGeom_FrictPhys_CundallStrack()}
     O.engines = [ForceResetter(), InsertionSortCollider([functors["bound"]]),

@@ -34,7 +34,7 @@ class Found:
 
 
 def command_of(folder: Path) -> str | None:
-    """Return the command installed with the libraries of a folder, if any."""
+    """Return the yade command installed beside the libraries of a folder, if there is one."""
     command = folder.resolve().parents[2] / "bin" / "yade"
     return str(command) if command.exists() else None
 

@@ -12,7 +12,8 @@ _MEMBERS = ["class", "member", "offset_bytes", "size_bytes", "seen_by", "in_head
 
 @dataclass
 class Interface:
-    """Sizes [byte], members (offset [byte], type), tables and names of stored attributes, by class."""
+    """Interface of YADE by class: sizes [byte], members (offset [byte], type), virtual function tables, stored names.
+    """
 
     name: str
     sizes: dict[str, int] = field(default_factory=dict)
@@ -24,7 +25,7 @@ class Interface:
     binaries: list[str] = field(default_factory=list)
 
     def title(self) -> str:
-        """Return the name of the interface, and the binaries that have it."""
+        """Return the name of the interface and the YADE binaries that have it."""
         return f"{self.name} ({'; '.join(self.binaries)})" if self.binaries else self.name
 
 
@@ -108,7 +109,7 @@ def _other_names(what: str, measured: dict[str, list[str]], reference: dict[str,
 
 
 def write(measured: Interface, like: Interface, folder: Path) -> None:
-    """Write the three tables of a variant, with the classes and members of a known one."""
+    """Write the three tables of an interface variant; classes and members are those of a known variant."""
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "measured_members.csv").open("w", newline="") as file:
         members = csv.DictWriter(file, _MEMBERS, lineterminator="\n")

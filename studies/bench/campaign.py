@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Throughput of campaigns: 10 000 samples of a single joint, scaling from one to two workers, and a whole campaign of
-200 trusses with 100 joints. Writes results/bench/campaign.md and campaign.csv.
+"""Measures the throughput of campaigns: 10 000 samples of a single joint with one and two workers, and a campaign of
+200 trusses with 100 joints each. Writes results/bench/campaign.md and campaign.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/campaign.py
 """
@@ -30,9 +30,9 @@ COLUMNS = ("what", "repetition", "workers", "samples", "wall_time_s", "worker_ti
 
 
 def measured(what: str, repetition: int, campaign: Plan, workers: int | None) -> dict[str, object]:
-    """Run the campaign with a new cluster and journal; return the wall time without the start of the cluster.
+    """Run the campaign with a new cluster and journal; return the wall time [s] without the start of the cluster.
 
-    :param workers: number of workers; None: as in the command, including the start of the cluster
+    :param workers: number of workers; None: the default of the command, and the time includes the cluster's start
     """
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory(prefix="statejump-bench-") as folder:
@@ -47,7 +47,7 @@ def measured(what: str, repetition: int, campaign: Plan, workers: int | None) ->
 
 
 def bare(repetition: int, campaign: Plan) -> dict[str, object]:
-    """Run the same samples in a loop of this process, without Dask and without journal."""
+    """Run the same samples in a loop in this process, without Dask and without a journal file."""
     load, started = os.getloadavg()[0], time.perf_counter()
     for index in range(campaign.samples):
         work.run_sample(campaign, index)

@@ -3,9 +3,9 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/complementarity.py [--problems 10000] [--siconos 10]
 
-Six families of studies/bench/piles.py in the plane and in space, with 1 to 200 contacts. With --siconos N the solvers
-of Debian's python3-siconos also solve the first N problems of each family and dimension, and its merit judges all
-solutions. Writes results/bench/complementarity.md.
+Problems are of the six families of studies/bench/piles.py, in the plane and in space, with 1 to 200 contacts. With
+--siconos N, the solvers of Debian's python3-siconos also solve the first N problems of each family and dimension, and
+Siconos' merit function judges all solutions. Writes results/bench/complementarity.md.
 """
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Run:
 
 
 def problems(seed: int) -> Iterator[tuple[str, int, fclib.Problem, int]]:
-    """Yield one problem of each family in each dimension, and its degrees of freedom."""
+    """Yield problems, one of each family in each dimension, and the degrees of freedom of each problem."""
     random = np.random.default_rng(seed)
     for (family, make), dimension in product(FAMILIES.items(), (2, 3)):
         contacts = round(float(np.exp(random.uniform(0.0, np.log(LARGEST)))))
@@ -72,12 +72,12 @@ def runs_of(seed: int) -> list[Run]:
 
 
 def percent(values: Sequence[bool]) -> str:
-    """Return a fraction in percent; 100 % only if all are solved."""
+    """Return a fraction of solved problems in percent; 100 % only if all are solved."""
     return "100" if all(values) else f"{min(100.0 * sum(values) / len(values), 99.99):.2f}"
 
 
 def ours(number: int, seed: int, workers: int, most_seconds: float) -> list[str]:
-    """Return the table of this project's solver: fraction of problems solved within a time."""
+    """Return the table of this project's solver: fraction of problems solved within time limits."""
     end = time.monotonic() + most_seconds
     batches = range(seed, seed + -(-number // (2 * len(FAMILIES))))
     found: list[Run] = []
@@ -108,7 +108,7 @@ def _row(name: str, dimension: str, runs: Sequence[Run]) -> str:
 
 
 def beside_siconos(number: int, seed: int) -> list[str]:
-    """Return the table of the solvers of Siconos for some of the problems."""
+    """Return a table of this project's solver beside those of Siconos, for some of the problems."""
     import siconos.numerics as sn
 
     named = {2: {"NSGS": sn.SICONOS_FRICTION_2D_NSGS, "Lemke": sn.SICONOS_FRICTION_2D_LEMKE},

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of the checks of numbers in the inner loop, and of the start of a command, in instructions.
+"""Counts instructions of the checks of numbers in the DEM's inner loop, and of the start of a command.
 
     cost_of_checks.py steps                        a step of the JointStepper with its checks and without them
     cost_of_checks.py start BEFORE AFTER           the start of the command in two builds (folders for PYTHONPATH)
 
-callgrind counts the instructions, so that other load of the machine does not matter. ``steps``: difference of two runs,
-the second twice as long. Without checks, the functions of checks.hpp, and that of contacts in lanes of four, always
-return success. Compiler optimisation may change the count by more than the checks do. ``start``: ``--version`` and
-``reduced table1``, with bytecode as in an installation.
+callgrind counts the instructions, so other load of the machine does not matter. ``steps`` subtracts two runs, the
+second twice as long. To remove the checks, the functions of checks.hpp and the check of four contacts are made to
+return success. Compiler optimisation may change the count by more than the checks do. ``start`` runs ``--version`` and
+``reduced table1``, with compiled bytecode as in an installation.
 """
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def instructions(*command: str, **environment: str) -> int:
 
 
 def without_checks(headers: Path) -> None:
-    """Make every check of a step pass. :raises SystemExit: a check is not found"""
+    """Edit the sources so that every check of a step succeeds. :raises SystemExit: a check is not found"""
     for name, questions in QUESTIONS.items():
         file = headers / "statejump/stepper" / name
         text = file.read_text(encoding="utf-8")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hashes of final states computed by the JointStepper and by YADE's loop; writes results/bench/equality.md.
+"""Compares hashes of the final states of the JointStepper and of YADE's loop; writes results/bench/equality.md.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/equality.py --build build
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Creak and snap over the rate of heating; writes results/motion/heating_rate.md, .csv and .png.
+"""Energies of creak and snap over the heating rate; writes results/motion/heating_rate.md, .csv and .png.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/heating_rate.py [--case NAME]
 
-Two cases run with several periods and steps of one length: a chain of blocks that slip one after the other, and a
-shallow arch of two bars with play that snaps through.
+Two cases run with several periods and equal time steps: a chain of blocks that slip one after the other, and a shallow
+arch of two bars with play that snaps through.
 """
 from __future__ import annotations
 

@@ -3,11 +3,11 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/histories.py [--members 10000] [--times 1000]
 
-There are two trusses. The umbrella has cables between its ribs, two members and a clearance joint each; most joints
-slip at once. The mast is a double-layer grid, two bays of 0.2 m across, whose length depends on the number of members
-(125 m for 10 000). At every tenth bay its chords have latches: sliders with friction and free play. `statejump.orbit`
-gives every member its temperatures over ten orbits, each with its own sunlit fraction. They are written as HDF5 for the
-case. Every row is read, checked and solved in a separate process, so that its memory can be measured. Writes
+There are two trusses. The umbrella has ribs of two members and a clearance joint, with cables between the ribs; most
+joints slip at once. The mast is a double-layer grid, two bays of 0.2 m across, whose length depends on the number of
+members (125 m for 10 000). At every tenth bay the chords have latches: sliders with friction and free play.
+`statejump.orbit` computes the temperatures of every member over ten orbits, with individual sunlit fractions; the case
+reads them from HDF5. Every row of results is computed in a separate process, to measure its memory. Writes
 results/bench/histories.md.
 """
 from __future__ import annotations
@@ -48,9 +48,9 @@ def umbrella(members: int) -> dict[str, Any]:
 
 
 def mast(members: int) -> dict[str, Any]:
-    """Return a double-layer grid with 16 members in every bay of its length: two layers of squares, the upper one
-    shifted by half a bay, and four diagonals from each of its nodes downwards. Supports hold its edges at every 25th
-    bay, free in its direction."""
+    """Return a double-layer grid with 16 members per bay of its length. Each layer consists of squares; the upper layer
+    is shifted by half a bay, and four diagonals descend from each of its nodes. At every 25th bay supports hold the
+    edges across the mast, but not along it."""
     bays = members // (8 * ACROSS)
     places = {f"B{i}_{j}": (i * BAY_M, j * BAY_M, 0.0) for i in range(bays + 1) for j in range(ACROSS + 1)}
     places |= {f"T{i}_{j}": ((i + 0.5) * BAY_M, (j + 0.5) * BAY_M, BAY_M / 2**0.5)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors of a quasi-static path over the number of increments; writes results/bench/increments.md and .csv.
+"""Measures errors of a quasi-static path over the number of increments; writes results/bench/increments.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/increments.py [--output DIR]
 
-Paths of shipped trusses with several numbers of increments per branch: the energy balance at every state, and the
-distance of the nodes at the end from the path with the most increments.
+Shipped trusses run with several numbers of increments per branch. Errors are the energy residue at every state, and the
+distance of the final nodes from those of the path with the most increments.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ COLUMNS = ("case", "increments", "balance", "displacement", "solves")
 
 
 def residue(path: solve.TrussPath) -> float:
-    """Return the largest energy residue at any state, divided by the largest work of the temperature."""
+    """Return the largest energy residue at any state, over the largest work of thermal expansion."""
     states = path.states
     stored = states["elastic_energy_J"] + states["load_potential_J"]
     left = states["thermal_work_J"] - (stored - stored[0]) - solve.heat_of_joints_J(states).sum(axis=1)

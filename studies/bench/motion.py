@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses in motion against the DEM and the quasi-static solver; writes results/motion/models.md and models.csv.
+"""Compares truss dynamics with the DEM and the quasi-static solver; writes results/motion/models.md and models.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion.py [--case NAME]
 
-Each case runs in the DEM, in motion with the DEM's masses and elastic sticking or partial slip, in motion with penalty
-contact, and on the quasi-static path with elastic and with rigid sticking. Runs are compared point by point at the
-DEM's samples. Unsupported combinations are omitted: latches with penalty contact, balls that stick rigidly.
+Each case runs in the DEM, in truss dynamics with the DEM's masses and elastic sticking or partial slip, in truss
+dynamics with penalty contact, and on the quasi-static path with elastic and with rigid sticking. Runs are compared
+point by point at the DEM's samples. Unsupported combinations are omitted: latches with penalty contact, balls that
+stick rigidly.
 """
 from __future__ import annotations
 
@@ -51,14 +52,14 @@ COLUMNS = ("case", "model", "jump_m", "jump_node", "jump_difference_m", "rms_ove
 
 
 def peak_acceleration(run: Any) -> float:
-    """Return the largest second difference of a node's displacement at the samples [m/s²]. Changes within two samples
-    are lost in both models."""
+    """Return the largest acceleration of a node [m/s²], as second difference of the samples; shorter changes are lost
+    in both models."""
     moved, interval = run["displacement_m"], run.time_s[1] - run.time_s[0]
     return float(np.linalg.norm(moved[2:] - 2 * moved[1:-1] + moved[:-2], axis=2).max() / interval**2)
 
 
 def row(case: Any, name: str, model: str, run: Any, dem: Any, steps: float, seconds: float) -> dict[str, Any]:
-    """Return the results of one run, and its difference from the DEM at the node with the DEM's largest jump."""
+    """Return the results of one run, and its difference from the DEM at the node that jumps most in the DEM."""
     jumps = compare.jumps_m(run)
     node = int(np.argmax(np.linalg.norm(compare.jumps_m(dem), axis=1)))
     apart = np.linalg.norm(run["displacement_m"] - dem["displacement_m"], axis=2)
@@ -76,14 +77,14 @@ def row(case: Any, name: str, model: str, run: Any, dem: Any, steps: float, seco
 
 
 def explicit(case: Any) -> Any:
-    """Return the case with penalty contact, with equally many steps between any two samples."""
+    """Return the case with penalty contact, and with the same number of time steps between all samples."""
     least, samples = stable_steps.least_steps_per_cycle(case.definition), case.output.samples_per_cycle
     return case.changed({"motion.scheme": "regularised",
                          "motion.steps_per_cycle": ceil(EXPLICIT_STEPS * least / samples) * samples})
 
 
 def models(case: Any, partial: bool) -> Iterator[tuple[str, Any, bool]]:
-    """Yield name and case of every model besides the DEM, and whether it has inertia."""
+    """Yield, for every model except the DEM, its name, its case, and whether it has inertia."""
     yield "in motion", case, True
     if not case.latch_hinge:
         yield "in motion, regularised", explicit(case), True

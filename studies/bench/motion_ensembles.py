@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ensembles of undamped trusses in motion and in the DEM; writes results/motion/ensembles.md, .csv and .png.
+"""Compares ensembles of undamped trusses in truss dynamics and in the DEM; writes results/motion/ensembles.md, .csv and
+.png.
 
     PYTHONPATH=build/python:. /usr/bin/python3 studies/bench/motion_ensembles.py [--case NAME]
 
-Without dashpots the vibration after an impact never decays, and runs with small differences diverge, but distributions
-can be compared. Both models run many times with random heating periods from a narrow range, drawn separately for each
-model. The tests are those of `statejump figures`.
+Without dashpots the vibration after an impact never decays, and nearby runs diverge. Therefore only distributions of
+results are compared. Each model runs many times with its own random heating periods from a narrow range. The
+statistical tests are those of `statejump figures`.
 """
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ UNDAMPED = {"dem.link_damping_ratio": 0.0, "dem.contact_damping_ratio": 0.0, "de
 
 @dataclass(frozen=True)
 class Ensemble:
-    """One ensemble: load, period [s], implicit steps per cycle, and unit of heat as number per joule and name."""
+    """One ensemble: load, period [s], implicit steps per cycle, and unit of heat as (units per joule, name)."""
 
     load: Callable[[], Any]
     period_s: float
@@ -89,7 +90,7 @@ def drawn(case: Any, model: str, count: int) -> Iterator[Any]:
 
 
 def row(name: str, model: str, case: Any, node: int, along: np.ndarray) -> dict[str, Any]:
-    """Run a case and return its compared quantities, with the jump of a node along a direction."""
+    """Run a case and return the compared quantities, among them the jump of a node along a direction."""
     run = case.dem() if model in FRACTIONS else case.reduced(dynamic=True)
     return {"case": name, "model": model, "period_s": case.thermal.period_s,
             "jump_m": float(compare.jumps_m(run)[node] @ along),
@@ -97,17 +98,17 @@ def row(name: str, model: str, case: Any, node: int, along: np.ndarray) -> dict[
 
 
 def unit(name: str, key: str) -> tuple[float, str]:
-    """Return the number of units per SI unit for a quantity of a case, and the unit."""
+    """Return the display unit of a quantity of a case: units per SI unit, and name."""
     return {"jump_m": (1e6, "µm"), "friction_J": CASES[name].heat, "peak_m_per_s2": (1.0, "m/s²")}[key]
 
 
 def values(rows: list[dict[str, Any]], case: str, model: str, key: str) -> np.ndarray:
-    """Return a quantity of all runs of a model of a case."""
+    """Return the values of a quantity in all runs of a case by one model."""
     return np.array([row[key] for row in rows if row["case"] == case and row["model"] == model])
 
 
 def tests(rows: list[dict[str, Any]], case: str, model: str) -> list[TwoSampleTest]:
-    """Return the tests of all quantities of a case between a model and the DEM with its shortest steps."""
+    """Return the statistical tests of all quantities of a case: a model against the DEM with its shortest steps."""
     return [two_sample_test(words, *(values(rows, case, one, key) for one in (model, FINE)))
             for key, words in QUANTITIES.items()]
 

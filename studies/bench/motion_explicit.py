@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convergence of the DEM, penalty contact and Moreau–Jean; writes results/motion/explicit.md and explicit.csv.
+"""Convergence of the DEM, penalty contact and Moreau–Jean with the time step; writes results/motion/explicit.md and
+explicit.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_explicit.py [--case NAME]
 
-The reference is penalty contact with a fortieth of the stable step.
+The reference is penalty contact with 1/40 of the stable time step.
 """
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of trusses in motion over the number of slipping joints; writes results/motion/size.md and .csv.
+"""Measures the cost of truss dynamics over the number of slipping joints; writes results/motion/size.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_size.py [--case CASE] [--largest JOINTS]
 
-Chains of blocks, and umbrellas with cables and friction coefficients between 0.1 and 0.2, with equal steps and with
-steps by tolerance. The largest ones take minutes of CPU.
+Chains of blocks, and umbrellas with cables and friction between 0.1 and 0.2, run with equal time steps and with steps
+controlled by a tolerance. The largest ones take minutes of CPU.
 """
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def row(name: str, joints: int) -> dict[str, Any]:
 
 
 def power(rows: list[dict[str, Any]]) -> str:
-    """Return the exponent with which the cost of a step grows with the number of joints, from 100 joints on."""
+    """Return the exponent p in cost of a step ~ (number of joints)^p, fitted from 100 joints on."""
     first = next((one for one in rows if one["joints"] == 100), None)
     last = rows[-1]
     if first is None or last["joints"] <= 100:

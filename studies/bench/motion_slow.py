@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Slow heating: trusses in motion with a tolerance against the DEM; writes results/motion/slow_heating.md and .csv.
+"""Slow heating: truss dynamics with a tolerance against the DEM; writes results/motion/slow_heating.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_slow.py [--case CASE] [--runs FOLDER]
 
 A chain of 100 blocks with dashpots is heated and cooled once, with several periods. Periods named "damped" have
-critical dashpots in the links, so that the chain comes to rest between slips of its blocks. The number of DEM steps is
-proportional to the period; that of the motion depends on the events. Errors are against the motion with a tolerance of
-1e-12 m. DEM runs take minutes of CPU; --runs stores and reuses them.
+critical dashpots in the links, so that the chain comes to rest between slips of its blocks. The number of steps is
+proportional to the period in the DEM, but depends on the events in truss dynamics. The reference is truss dynamics with
+a tolerance of 1e-12 m. DEM runs take minutes of CPU; --runs stores and reuses them.
 """
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ COLUMNS = ("case", "model", "steps", "rms_over_largest", "largest_over_largest",
 
 
 def case(period: str) -> Any:
-    """Return the chain with the masses and the sticking of the DEM."""
+    """Return the chain case with the DEM's masses and the DEM's sticking stiffness."""
     damped = {"dem.link_damping_ratio": CRITICAL} if "damped" in period else {}
     return sj.truss.chain(BLOCKS).changed({
         "thermal.period_s": PERIODS_S[period], "reduced.sticking": "elastic", "motion.masses": "lumped",
@@ -64,7 +64,7 @@ def moved(period: str, tolerance_m: float) -> dict[str, Any]:
 
 
 def row(period: str, model: str, run: dict[str, Any], reference: np.ndarray) -> dict[str, Any]:
-    """Return the cost of one run and its error relative to the reference."""
+    """Return the cost of one run, and its error relative to the reference run."""
     apart = np.linalg.norm(run["d"] - reference, axis=2)
     largest = np.linalg.norm(reference, axis=2).max()
     return {

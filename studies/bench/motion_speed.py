@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of trusses in motion against the DEM at equal error; writes results/motion/speed.md and speed.csv.
+"""Measures the cost of truss dynamics and of the DEM at equal error; writes results/motion/speed.md and speed.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_speed.py [--case NAME]
 
 Both models run with several time steps, on one thread. The reference is the DEM with its default step, to which both
-converge. Times are CPU times of the steps. Chains of 100 to 10 000 blocks show how the cost of a step grows.
+converge. Times are CPU times of the time steps. Chains of 100 to 10 000 blocks show how the cost of a step grows.
 """
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ COLUMNS = ("case", "model", "steps", "theta", "rms_over_largest", "jump_error_m"
 
 
 def moved(case: Any) -> tuple[Any, float]:
-    """Return a motion as a run, and the CPU time of its steps [s]."""
+    """Return a run of truss dynamics, and the CPU time of its steps [s]."""
     definition = case.definition
     definition.resolve()
     begun = process_time()
@@ -45,7 +45,7 @@ def moved(case: Any) -> tuple[Any, float]:
 
 
 def row(name: str, model: str, run: Any, reference: Any, steps: int, theta: Any, seconds: float) -> dict[str, Any]:
-    """Return the cost of one run and its error relative to the reference."""
+    """Return the cost of one run, and its error relative to the reference run."""
     apart = np.linalg.norm(run["displacement_m"] - reference["displacement_m"], axis=2)
     jumps, exact = compare.jumps_m(run), compare.jumps_m(reference)
     return {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Common input of all programs in these benchmarks: n contacts of the same bodies under the same load.
+"""Input shared by all programs in these benchmarks: n contacts of the same bodies under the same load.
 
-Scripts in YADE import it too. Joint radius, clearance and material are those of Table 2 of Chen et al. (2021).
+YADE scripts import this module too. Joint radius, clearance and material are those of Table 2 of Chen et al. (2021).
 """
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EFFECTIVE_MODULUS = YOUNG / (2 * (1 - POISSON**2))  # Pa
 
 
 def depth(effective_radius: float) -> float:
-    """Return the depth at which a Hertz contact carries the load [m]."""
+    """Return the depth [m] at which a Hertz contact carries the load of the benchmark."""
     return (LOAD / (4 / 3 * EFFECTIVE_MODULUS * sqrt(effective_radius))) ** (2 / 3)
 
 

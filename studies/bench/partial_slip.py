@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of friction law mindlin_deresiewicz over that of mindlin, both by name, in YADE's loop and in the JointStepper.
+"""Measures the cost of friction law mindlin_deresiewicz relative to mindlin, in YADE's loop and in the JointStepper.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/partial_slip.py --build build
 
-Prints ratios of CPU times of two successive runs. The contacts of yade_joints.py stick after an initial vibration that
-leaves about forty points in their memory. Exit status 2 with a message if a program is missing.
+Prints ratios of CPU times of two successive runs. The contacts of yade_joints.py stick after an initial vibration,
+which leaves about forty points in the load history of each contact. Exit status 2 with a message if a program is
+missing.
 """
 from __future__ import annotations
 

@@ -5,10 +5,10 @@
     /usr/bin/python3 studies/bench/peers.py --build build
 
 Every program computes the same n contacts with the material, load and time step of studies/bench/yade_joints.py, on one
-thread, in a new process per run. The time is the processor time of a run minus that of a run that ends after the
+thread, in a new process per run. A measured time is the processor time of a run minus that of a run that ends after the
 warm-up. ``lammps_bore`` corresponds to joints under expansion: n spheres in one bore, all radii updated in every step.
-``bare_loop`` runs the kernel of the joints in a loop without anything else (studies/bench/stepper), the lower bound of
-the cost. A program that is not installed is reported and omitted. Exit status 2 with a message if a run fails.
+``bare_loop`` (studies/bench/stepper) runs only the joint kernel in a loop, which gives a lower bound of the cost. A
+program that is not installed is reported and omitted. Exit status 2 with a message if a run fails.
 """
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ DENSITY = MASS / (4 / 3 * pi * RADIUS**3)
 
 @dataclass
 class Deck:
-    """Input of LAMMPS or LIGGGHTS: lines of commands, and the bodies (type, x, y, z)."""
+    """Input file of LAMMPS or LIGGGHTS: command lines, and bodies (type, x, y, z)."""
 
     program: str
     lines: list[str]
@@ -86,13 +86,13 @@ HEAD = ("newton off", f"neighbor {SEARCHED} bin", "neigh_modify delay 0 every 1 
 
 
 def pairs(size: int) -> list[tuple[int, float, float, float]]:
-    """Return a fixed and a free sphere at each position of a cubic grid, as bodies of a deck."""
+    """Return a pair of a fixed and a free sphere at each position of a cubic grid, as bodies of a deck."""
     offset = 2 * RADIUS - depth(RADIUS / 2)
     return [atom for x, y, z in places(size) for atom in ((1, x, y, z), (2, x + offset, y, z))]
 
 
 def lammps(style: str, atoms: list[tuple[int, float, float, float]], more: list[str]) -> Deck:
-    """Return a deck with Hertz' law, K_n in F = K_n sqrt(R d) d, and Mindlin's spring, K_t = 8 G*."""
+    """Return a deck for LAMMPS with Hertz' law F = K_n sqrt(R d) d and Mindlin's tangential spring K_t = 8 G*."""
     normal, tangential = 4 / 3 * EFFECTIVE_MODULUS, 8 * YOUNG / (4 * (1 + POISSON) * (2 - POISSON))
     law = f"{normal} {tangential} 0.0 0.0 {FRICTION} 0"
     return Deck("lmp", [

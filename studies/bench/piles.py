@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random frictional contact problems of piles of rigid bodies, as in granular and masonry mechanics.
 
-With W = H M^-1 H^T and q = H v, u = 0 is possible, so a solution exists (Acary and Cadoux 2013). If contacts outnumber
-the degrees of freedom, W is rank-deficient.
+With W = H M^-1 H^T and q = H v, the contact velocity u = 0 is possible, so a solution exists (Acary and Cadoux 2013).
+If contacts outnumber the degrees of freedom, W is rank-deficient.
 """
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ GROUND = -1
 
 
 class Pile:
-    """Rigid bodies and the contacts between them, in the plane (x, z) or in space.
+    """Rigid bodies and the contacts between them, in the plane (axes x and z) or in space.
 
     :param dimension: 2 or 3
     """
@@ -42,7 +42,7 @@ class Pile:
         self.contacts.append((below, above, point, normal))
 
     def rows(self) -> Array:
-        """Return H, which maps velocities of bodies to relative velocities at contacts."""
+        """Return the matrix H, which maps velocities of bodies to relative velocities at contacts."""
         freedoms = 3 if self.dimension == 2 else 6
         h = np.zeros((self.dimension * len(self.contacts), freedoms * len(self.centres)))
         for k, (below, above, point, normal) in enumerate(self.contacts):
@@ -61,8 +61,8 @@ class Pile:
         return h
 
     def problem(self, random: Random, kick: float) -> tuple[Problem, int]:
-        """Return the problem of a step under gravity, with random velocities of size ``kick`` before it, and the number
-        of degrees of freedom."""
+        """Return the contact problem of a step under gravity, and its degrees of freedom. Velocities before the step
+        are random with the size ``kick``."""
         h = self.rows()
         masses = np.concatenate(self.masses)
         velocity = kick * random.normal(size=masses.size)
@@ -109,7 +109,7 @@ def random_bodies(dimension: int, contacts: int, random: Random) -> tuple[Proble
 
 
 def random_rows(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Return a problem with independent random entries of H, so that every contact affects every other."""
+    """Return a problem whose matrix H has independent random entries, so that every contact affects every other."""
     size = contacts * dimension
     h = random.normal(size=(size, max(1, round(random.uniform(0.2, 1.5) * size))))
     problem = Problem(h @ h.T, h @ random.normal(size=h.shape[1]), friction(random, contacts), dimension)
@@ -142,13 +142,13 @@ def spheres(dimension: int, contacts: int, random: Random) -> tuple[Problem, int
 
 
 def _face(pile: Pile, below: int, above: int, low: Array, high: Array, height: float) -> None:
-    """Add contacts at the corners of a horizontal rectangle, or in the plane at the ends of a line."""
+    """Add contacts at the corners of a horizontal rectangle (in space) or at the ends of a line (in the plane)."""
     for corner in product(*zip(low, high)):
         pile.contact(below, above, np.array([*corner, height]), np.eye(pile.dimension)[-1])
 
 
 def bricks(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Return a problem of a brick wall in bond, with four contacts per face, so that forces are not unique."""
+    """Return a problem of a brick wall in bond. Each face has four contacts, so contact forces are not unique."""
     pile = Pile(dimension)
     per_face = 2 if dimension == 2 else 4
     courses = max(1, round((contacts / per_face / 2.0) ** 0.5))
@@ -172,7 +172,7 @@ def bricks(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]
 
 
 def tower(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Return a problem of crosswise planks, two per level, in space, or of a column of blocks in the plane."""
+    """Return a problem of a tower: in space crosswise planks, two per level; in the plane a column of blocks."""
     pile = Pile(dimension)
     if dimension == 2:
         below = GROUND
@@ -199,7 +199,7 @@ def tower(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
 
 
 def chain(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Return a problem of balls in a row, pressed between two walls and hit in the middle."""
+    """Return a problem of a row of balls, pressed between two walls and hit in the middle."""
     pile = Pile(dimension)
     axis = np.eye(dimension)[0]
     below = GROUND

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of a joint contact beside YADE's sphere-sphere Hertz-Mindlin law, each in a new YADE process.
+"""Measures the cost of a joint contact and of YADE's sphere-sphere Hertz-Mindlin law, each in a new YADE process.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/run.py --build build
 
 Runs the variants of yade_joints.py in turn, several times, and writes results/bench/joints.csv and
-results/bench/README.md. Ratios are those of successive runs, because load of the machine then affects both. Exit status
-2 with a message if a program is missing.
+results/bench/README.md. A ratio compares successive runs, because other load of the machine then affects both. Exit
+status 2 with a message if a program is missing.
 """
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def column(rows: list[dict[str, Any]], scene: str, size: int, key: str) -> list[
 def ratios(
     rows: list[dict[str, Any]], size: int, key: str, scenes: tuple[str, str] = (OURS, YADES)
 ) -> list[float]:
-    """Return the ratios of the first to the second scene, one per repetition, sorted."""
+    """Return the sorted ratios of the times of the first to the second scene, one per repetition."""
     first, second = (column(rows, scene, size, key) for scene in scenes)
     return sorted(a / b for a, b in zip(first, second))
 
@@ -154,7 +154,7 @@ def table1_table(rows: list[dict[str, Any]]) -> str:
 
 
 def engine_table(build: Path, repetitions: int) -> str:
-    """Return the fraction of each engine by O.timingEnabled, from separate runs, because it slows YADE down."""
+    """Return each engine's fraction of the time, from O.timingEnabled. Separate runs are used: it slows YADE down."""
     engines = [
         "ForceResetter", "ThermalExpansionEngine", "InsertionSortCollider", "InteractionLoop",
         "NewtonIntegrator",
@@ -181,7 +181,7 @@ def engine_table(build: Path, repetitions: int) -> str:
 
 
 def write(path: Path, text: str) -> None:
-    """Write a temporary file, then rename it, so that no incomplete file remains."""
+    """Write a temporary file and rename it, so that no incomplete file remains."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name("." + path.name + ".partial")
     partial.write_text(text)
@@ -189,7 +189,7 @@ def write(path: Path, text: str) -> None:
 
 
 def reduced_table(build: Path) -> str:
-    """Return the times of the reduced model, by Google Benchmark: medians of five."""
+    """Return the table of times of the reduced model: medians of five runs of Google Benchmark."""
     done = subprocess.run(
         [build / "bench" / "engine" / "engine_bench", "--benchmark_repetitions=5",
          "--benchmark_report_aggregates_only=true", "--benchmark_format=json"],
@@ -220,7 +220,8 @@ def as_csv(rows: list[dict[str, Any]], columns: Sequence[str] = COLUMNS) -> str:
 
 
 def start(main: Callable[[], None], *failures: type[Exception]) -> None:
-    """Run a benchmark. A BenchError, an OSError or one of the given errors ends it with status 2 and a message."""
+    """Run a benchmark. If it raises a BenchError, an OSError or one of the given errors, exit with status 2 and a
+    message."""
     told: tuple[type[Exception], ...] = (BenchError, OSError, *failures)
     try:
         main()
@@ -242,9 +243,9 @@ def parse(parser: argparse.ArgumentParser, repetitions: int) -> argparse.Namespa
 
 
 def parse_cases(description: str, cases: Iterable[str], **more: dict[str, Any]) -> argparse.Namespace:
-    """Return the options of a benchmark of trusses in motion: cases to run (``case``) and results folder.
+    """Return the options of a benchmark of truss dynamics: cases to run (``case``) and results folder.
 
-    :param more: further options by name, as ``add_argument`` takes them
+    :param more: further options by name, with the arguments of ``add_argument``
     """
     known = list(cases)
     parser = argparse.ArgumentParser(description=description)

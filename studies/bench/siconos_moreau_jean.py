@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Moreau–Jean scheme of this project and of Siconos; writes results/motion/siconos.md and siconos.csv.
+"""Compares the Moreau–Jean schemes of this project and of Siconos; writes results/motion/siconos.md and siconos.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/siconos_moreau_jean.py
 
-A journal bounces in a bearing on an elastic link, and a second one bounces in a bore of the first: two clearance
-revolutes, rigid contact, Coulomb friction, Newton's restitution, five displacements. Both programs have the same theta
-and steps. Only this program needs Siconos (Debian: python3-siconos).
+A bearing hangs on an elastic link; a journal bounces in it, and a second journal bounces in a bore of the first. The
+model has rigid contact, Coulomb friction, Newton's restitution and five degrees of freedom. Both schemes use the same
+theta and time steps. This program needs Siconos (Debian: python3-siconos).
 """
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def case(friction: float) -> Any:
 
 
 def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
-    """Return positions (steps + 1, 5) [m], CPU time of the steps [s] and times of impacts [s] of this project."""
+    """Return this project's positions (steps + 1, 5) [m], CPU time of the steps [s] and times of impacts [s]."""
     definition = case(friction).changed({"motion.steps_per_cycle": steps, "output.samples_per_cycle": steps}).definition
     definition.resolve()
     begun = process_time()
@@ -68,7 +68,7 @@ def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
 
 
 def there(steps: int, friction: float) -> tuple[np.ndarray, float]:
-    """Return the same positions computed by Siconos, and the CPU time of its steps [s]."""
+    """Return Siconos' positions (steps + 1, 5) [m] and CPU time of the steps [s]."""
     import siconos.kernel as kernel
     import siconos.numerics as numerics
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of time steps by the JointStepper and by YADE's loop; writes results/bench/steppers.md and steppers.csv.
+"""Measures the cost of time steps of the JointStepper and of YADE's loop; writes results/bench/steppers.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py
 
-CPU time of the steps, without the start of YADE, on one thread: a chain of 1000 joints, the damped rib and Table 1. The
-chain is run without samples; rib and Table 1 with the samples of the case and with few.
+The cost is the CPU time of the steps on one thread, without the start of YADE. A chain of 1000 joints runs without
+samples; the damped rib and the paper's Table 1 run with the samples of the case and with few.
 """
 from __future__ import annotations
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time and memory of the quasi-static truss solver over the number of joints.
+"""Measures time and memory of the quasi-static truss solver over the number of joints.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py [--largest 1000000] [--trusses ring umbrella]
 
-Two trusses run through one temperature cycle with ten points per branch: the ring of `statejump truss ring` with
-preload, and the umbrella with cables between its ribs. Its friction is scattered, so that every joint slips at its own
-temperature. Items come from HDF5 tables beside the case file; for 100 000 joints also as Python objects.
-OMP_NUM_THREADS sets the number of threads. Every row is measured in a separate process, so that its memory can be
-measured; another process makes the tables. Writes results/bench/truss.md after every row.
+Two trusses run through one temperature cycle with ten points for heating and ten for cooling: the ring of `statejump
+truss ring` with preload, and the umbrella with cables between its ribs. The umbrella's friction is scattered, so that
+every joint slips at a different temperature. Nodes, links and joints are read from HDF5 tables; for 100 000 joints also
+passed as Python objects. OMP_NUM_THREADS sets the number of threads. Every row is computed in a separate process, to
+measure its memory. Writes results/bench/truss.md after every row.
 """
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def document(truss: str, joints: int) -> dict[str, Any]:
 
 
 def column(items: Sequence[Mapping[str, Any]], key: str) -> Any:
-    """Return a key of every item as a data set; NaN or empty text for a missing value."""
+    """Return the values of a key for all nodes, links or joints as a data set; a missing value is NaN or empty text."""
     given: Any = next(item[key] for item in items if key in item)
     if not isinstance(given, list):
         none: Any = "" if isinstance(given, str) else np.nan
@@ -92,7 +92,7 @@ def write(truss: str, joints: int, folder: Path) -> None:
 
 
 def measure(truss: str, joints: int, folder: Path | None) -> tuple[float, str]:
-    """Return the time of a path [s], and a row of the table.
+    """Return the time of a quasi-static path [s], and a row of the results table.
 
     :param folder: folder of the case file with tables; None: items as Python objects
     """

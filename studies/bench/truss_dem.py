@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of a joint per step of trusses in the DEM; writes results/bench/truss_dem.md and truss_dem.csv.
+"""Measures the cost of a joint per time step of trusses in the DEM; writes results/bench/truss_dem.md and
+truss_dem.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss_dem.py
 
-Chains of blocks with friction from 100 to 10 000 joints, one thread, with energy account. The cost is the difference of
-two runs of different length, which excludes start and samples.
+Chains of 100 to 10 000 blocks with friction run on one thread, with energy account. The cost is the difference of two
+runs of different length, which excludes start and samples.
 """
 from __future__ import annotations
 

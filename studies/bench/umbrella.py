@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Speed of both models of the umbrella rib; writes results/bench/umbrella.md and umbrella.csv.
+"""Measures the speed of DEM and reduced model of the umbrella rib; writes results/bench/umbrella.md and umbrella.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 studies/bench/umbrella.py --build build
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/umbrella.py --build build
 """
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def reduced_rows(build: Path, repetitions: int) -> list[dict[str, object]]:
 
 
 def dem_rows(repetitions: int) -> list[dict[str, object]]:
-    """Run the DEM scene; return the wall time of the steps without the start of YADE."""
+    """Run the DEM scene; return the wall time of the time steps [s], without the start of YADE."""
     rows = []
     for name in ("umbrella_damped", "umbrella"):
         case = statejump.load(REPOSITORY / "cases" / f"{name}.toml").changed({"dem.steps_per_cycle": DEM_STEPS})

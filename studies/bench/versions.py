@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processor time of the quasi-static solver of two versions of the project, case by case.
+"""Compares the processor time of the quasi-static solver in two versions of the project, case by case.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/versions.py OLD NEW [--structures 60] [--repeat 5]
         [--limit 20]
 
-OLD and NEW are folders with a built package `statejump` each. Cases are the shipped trusses and structures of
-tests/ordinary; only cases that both versions finish count. The versions run alternately in separate processes, and only
-the path of the engine is timed. Prints medians, their ratio, and the solved cases.
+OLD and NEW are folders with a built package `statejump` each. Cases are the shipped trusses and the structures of
+tests/ordinary; only cases that both versions finish count. The versions run alternately in separate processes; only the
+path in the engine is timed. Prints medians, their ratio, and the solved cases.
 """
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ for line in sys.stdin:
 
 
 class Version:
-    """A process that solves case files with a built package.
+    """A process that solves case files with one version of the built package.
 
     :param package: folder with the package
-    :param limit_s: CPU seconds after which a path is cancelled
+    :param limit_s: CPU time [s] after which a path is cancelled
     """
 
     def __init__(self, package: Path, limit_s: float) -> None:
@@ -71,7 +71,7 @@ class Version:
 
 
 def ordinary(folder: Path, count: int) -> Iterator[Path]:
-    """Write ordinary structures, one of each family in turn; yield their files."""
+    """Write case files of structures of tests/ordinary, one of each family in turn; yield the files."""
     sys.path.insert(0, str(ROOT / "tests" / "ordinary"))
     import structures
     from statejump.kinds.truss.generate.document import to_toml
@@ -84,7 +84,7 @@ def ordinary(folder: Path, count: int) -> Iterator[Path]:
 
 
 def measured(versions: tuple[Version, Version], file: Path, repeat: int) -> dict[str, Any] | None:
-    """Return medians of both versions; None if one fails or takes longer."""
+    """Return the median times of both versions; None if one fails or exceeds the limit."""
     firsts = [version.solve(file) for version in versions]  # also warms caches
     if any("failed" in first for first in firsts):
         return None

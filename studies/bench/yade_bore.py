@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of a contact step in a bore of triangles, by YADE's loop and the JointStepper, beside the analytic bearing.
+"""Measures a contact step's cost in a meshed bore and in an analytic bearing, in YADE's loop and in the JointStepper.
 
     yade -n -x -j1 studies/bench/yade_bore.py                   # prints a table, writes results/bench/bore.md
     FACETS=1000,10000 REPORT=bore.md yade -n -x -j1 studies/bench/yade_bore.py
 
-100 journals, each in its bearing, all with one wall mesh, under three loads: at rest under a slowly rising temperature,
-and sliding slowly or fast around the bore, because the force on the journals rotates by 30 degrees per second or once
-in 20 ms. Prints CPU times per contact and step, medians of five. The variants run in turn in one process.
+The scene has 100 journals in 100 bearings, which share one wall mesh. There are three loads: the journal rests while
+the temperature rises slowly, or it slides around the bore because its force rotates slowly (30 degrees per second) or
+fast (once in 20 ms). Prints CPU times per contact and step, medians of five. The variants run in turn in one process.
 """
 import os
 import sys

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processor time of ``import statejump_yade`` in a new YADE process.
+"""Measures the processor time of ``import statejump_yade`` in a new YADE process.
 
     /usr/bin/python3 studies/bench/yade_import.py --build build [--build OTHER] [--repetitions 20]
 
-Several builds run in turn. "Setting up" is the time after the loading of the library: the guard, which compares the
-declared interface with that of YADE, and the registration of classes. Prints medians, minima and maxima. Exit status 2
-with a message if a file is missing.
+Several builds run in turn. "Setting up" is the time after the library is loaded: the guard compares the declared
+interface with that of YADE, then the classes are registered. Prints medians, minima and maxima. Exit status 2 with a
+message if a file is missing.
 """
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ print("spent", time.process_time() - start, time.process_time() - loaded)
 
 
 def spent(build: Path, script: Path) -> tuple[float, float]:
-    """Return the processor time in one YADE [s] of the whole import, and of setting up."""
+    """Return the processor times in one YADE process [s] of the whole import and of setting up."""
     done = subprocess.run(
         ["yade", "-n", "-x", "-j1", str(script)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
         env={**os.environ, "PYTHONPATH": str(build / "python"), "PYTHONDONTWRITEBYTECODE": "1"},

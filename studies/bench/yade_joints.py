@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One measurement of run.py: n contacts in YADE for a number of steps. Prints one line of JSON.
+"""One measurement of run.py: runs n contacts in YADE for a number of steps and prints one line of JSON.
 
     STATEJUMP_BENCH_VARIANT=joint STATEJUMP_BENCH_SIZE=100 yade -n -x -j1 studies/bench/yade_joints.py
 
 Variants, all with 2 n bodies, n contacts, the same collider and integrator:
 
 - ``joint``: revolute joints (journal in a fixed bearing) under thermal expansion; the temperature changes in every step
-- ``joint_stepper``: the same by the JointStepper, with one step of YADE's loop every ``SUBSTEPS`` steps
-- ``joint_isothermal``: the same without the ThermalExpansionEngine
+- ``joint_stepper``: as ``joint``, by the JointStepper, with one step of YADE's loop every ``SUBSTEPS`` steps
+- ``joint_isothermal``: as ``joint``, without the ThermalExpansionEngine
 - ``sphere``: pairs of spheres, one fixed, with YADE's own Law2_ScGeom_MindlinPhys_Mindlin
 - ``table1``: the whole script yade_scripts/examples/table1.py, without changes (one contact)
 
 The free body is pressed on the fixed one with a constant force inclined to the normal, below the friction limit, so
-that both laws carry a normal and a tangential force. Rotations are blocked, because a sphere would roll off. The body
-starts at the depth at which the contact carries the load.
+that both laws carry a normal and a tangential force. Rotations are blocked, because a sphere would roll off. The free
+body starts at the depth at which the contact carries the load.
 
 Environment: STATEJUMP_BENCH_VARIANT, _SIZE (n), _STEPS, _SUBSTEPS, _WARM_UP (steps), _TIMING (1: time of each engine by
 O.timingEnabled, which slows the run down), _ENERGY (1: O.trackEnergy), _FRICTION_LAW (name of the friction law of
@@ -124,7 +124,8 @@ def spheres():
 
 
 def check(when):
-    """Check that every pair touches and carries both forces without slip, and that no other bodies touch."""
+    """Check that every pair is in contact and carries normal and tangential force without slip, and that no other
+    bodies touch."""
     contacts = [contact for contact in O.interactions if contact.isReal]
     carrying = sum(
         contact.phys.normalForce.norm() > 0.5 * LOAD

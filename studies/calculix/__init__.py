@@ -20,7 +20,7 @@ def check(case: Case) -> None:
 def answer(case: Case) -> Answer:
     """Run a case in CalculiX and compare it with the reduced model.
 
-    :raises NotAllowed: the kind or a value has no deck
+    :raises NotAllowed: a CalculiX deck does not support the kind of case or a value
     :raises StatejumpError: CalculiX is missing or failed
     """
     check(case)

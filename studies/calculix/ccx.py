@@ -25,8 +25,8 @@ class Answer:
     """Comparison of a finite-element model of a case with the reduced model.
 
     :param deck: the deck for CalculiX
-    :param rows: rows by quantity, with values of the reduced model and of CalculiX
-    :param notes: notes on omissions of the finite-element model
+    :param rows: comparison table: per quantity the values of the reduced model and of CalculiX
+    :param notes: what the finite-element model omits
     """
 
     deck: str
@@ -35,10 +35,10 @@ class Answer:
 
 
 def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarray]]:
-    """Run a deck and return the displacements [m] of a set of nodes by number, for every increment that it prints.
+    """Run a deck and return the displacements [m] of a node set by node number, for every printed increment.
 
-    :raises StatejumpError: there is no CalculiX
-    :raises FailedRun: it did not come to the end
+    :raises StatejumpError: CalculiX is not installed
+    :raises FailedRun: the run was not completed
     """
     program = shutil.which(PROGRAM)
     if program is None:
@@ -73,6 +73,6 @@ def _read(path: Path, set_name: str) -> list[dict[int, np.ndarray]]:
 
 
 def number(value: float) -> str:
-    """Return a number in the format of a deck: CalculiX reads 20 characters."""
+    """Return a number as text for a deck; CalculiX reads at most 20 characters."""
     whole = repr(float(value))
     return whole if len(whole) <= 20 else f"{value:.13E}"

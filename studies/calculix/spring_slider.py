@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ``spring_slider`` case in CalculiX: a bar of one brick element pushes a block, which is pressed on a floor with
-frictional contact and may touch two stops with frictionless contact.
+"""Computes a ``spring_slider`` case in CalculiX. A bar of one brick element pushes a block; the block is pressed on a
+floor with frictional contact and may touch two stops with frictionless contact.
 
-Contacts that are rigid in the reduced model are stiff here: relative to the bar, STICK times in tangential direction,
-PUSH times in normal direction. Events are the intersections of straight pieces of displacement over temperature, so
-they do not depend on increments. The remaining error is the penetration, of relative size 1/PUSH.
+Contacts are rigid in the reduced model but stiff here: STICK times as stiff as the bar in tangential direction, PUSH
+times in normal direction. Events are intersections of straight pieces of displacement over temperature, so they do not
+depend on increments. The remaining error is the contact penetration, of relative size 1/PUSH.
 """
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def _corners(case: SpringSliderCase) -> list[float]:
 
 
 def _events(case: SpringSliderCase, corners: Sequence[float]) -> list[tuple[str, float]]:
-    """Return the temperature changes between the corners at which the block begins to slide or stops, in order."""
+    """Return in order the temperature changes at which the block begins to slide or stops; reversals are left out."""
     found = []
     for event in reduced.solve(case).events:
         before, after = event.stage_before in HOLDS, event.stage_after in HOLDS
@@ -98,11 +98,11 @@ def _events(case: SpringSliderCase, corners: Sequence[float]) -> list[tuple[str,
 
 
 def kinks(change: np.ndarray, moved: np.ndarray, slope: float) -> list[tuple[str, float]]:
-    """Return the temperature changes at which a piecewise linear path begins or ends to slide.
+    """Return the temperature changes at which a piecewise linear path begins or ceases to slide.
 
     :param change: temperature changes, in order of time
-    :param moved: displacement at each
-    :param slope: slope of a sliding piece
+    :param moved: displacement at each change
+    :param slope: displacement per change while sliding
     """
     slides = np.abs(np.diff(moved) / np.diff(change)) > 0.5 * abs(slope)
     found = []
@@ -189,7 +189,7 @@ def deck(case: SpringSliderCase, corners: Sequence[float]) -> list[str]:
 
 
 def _nodes(first: int, low: Sequence[float], high: Sequence[float]) -> list[str]:
-    """Return the eight nodes of a brick. Those of the bar are ordered by its ends, those of other bricks from below."""
+    """Return the eight nodes of a brick. Nodes of the bar are ordered by its ends, nodes of other bricks from below."""
     x, y, z = zip(low, high)
     corners = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
     if first == BAR:

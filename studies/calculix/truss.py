@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A truss with locked joints in CalculiX: bars of type T3D2, small displacements. If all joints are sliders, they slip
-in a second deck, see :mod:`studies.calculix.truss_sliding`.
+"""Computes a truss with locked joints in CalculiX: bars of type T3D2, small displacements. If all joints are sliders,
+they slip in a second deck, see :mod:`studies.calculix.truss_sliding`.
 
-CalculiX is linear, the solver is not. Its path is therefore linearised at ΔT = 0 and zero load: r(h) = (u(h) -
-u(-h))/(2 h) with temperatures and loads scaled by h, extrapolated as (4 r(h/2) - r(h))/3 with h = STEP. The error is of
-order (h u/height)⁴, with a small height for a shallow truss. CalculiX prints seven digits. A second run gives seven
-more: equations with two auxiliary nodes make it print differences from the displacements of the first run.
+CalculiX is linear, this project's solver is not. Its displacement u is therefore linearised at ΔT = 0 and zero load:
+r(h) = (u(h) - u(-h))/(2 h) with temperatures and loads scaled by h, extrapolated as (4 r(h/2) - r(h))/3 with h = STEP.
+The error is of order (h u/height)⁴, largest for shallow trusses. CalculiX prints seven digits. A second run gives seven
+more: equations with two auxiliary nodes make CalculiX print differences from the displacements of the first run.
 """
 from __future__ import annotations
 
@@ -76,9 +76,9 @@ def answer(case: TrussCase) -> ccx.Answer:
 
 
 def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quantity, ...]]:
-    """Return the deck with slipping sliders, and its rows.
+    """Return the deck with slipping sliders, and the rows of the comparison.
 
-    :raises NotAllowed: there are other joints, or something else that this deck does not have
+    :raises NotAllowed: the truss has other joints or features that this deck does not support
     """
     if truss.number_of_joints() > len(truss.sliders.names) or truss.sticking == "partial_slip":
         raise NotAllowed("joints", code="fe_other_joints")
@@ -108,15 +108,15 @@ def _refuse(truss: ResolvedTruss) -> None:
 
 
 def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:
-    """Return the ΔT [K] of every link with the largest absolute value in its program."""
+    """Return, for every link, the temperature change ΔT [K] of largest absolute value in its program."""
     ranges = truss.temperature_ranges_K[truss.links.program]
     largest = np.where(np.abs(ranges[:, 0]) > np.abs(ranges[:, 1]), ranges[:, 0], ranges[:, 1])
     return np.asarray(largest * truss.links.temperature_fraction)
 
 
 def pinned(truss: ResolvedTruss) -> ResolvedTruss:
-    """Return the truss with pins instead of joints with clearance (both nodes become one), and sliders instead of all
-    joints along an axis."""
+    """Return the truss with simpler joints: a pin for each joint with clearance (its two nodes become one), and a
+    slider for each joint along an axis."""
     place, none = np.arange(len(truss.nodes.names)), {}
     for joint in JOINTS:
         if not isinstance(joint, AlongAxis) or joint is SLIDER:
@@ -149,7 +149,7 @@ def pinned(truss: ResolvedTruss) -> ResolvedTruss:
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
     """Return the derivative of the solver's displacements (n, 3) [m] by a common factor of temperatures and loads, at
-    0."""
+    zero load."""
     def moved(step: float) -> Numbers:
         count = len(truss.links.names)
         program = TrussThermal(shape="triangle", temperature_change_max_K=1.0, period_s=1.0)
@@ -195,7 +195,7 @@ def deck(truss: ResolvedTruss, changes: Numbers, reference: Numbers | None = Non
     """Return the deck of a truss with locked joints.
 
     :param changes: temperature change of every link [K]
-    :param reference: displacements (n, 3) [m] to subtract from those of the node set TOLD; None: no such set
+    :param reference: displacements (n, 3) [m] to subtract from those of node set TOLD; None: the deck has no such set
     """
     nodes, links, count = truss.nodes, truss.links, len(truss.nodes.names)
     lines = ["*HEADING", f"statejump fe {truss.name}, joints locked", "*NODE, NSET=JOINTS"]
@@ -238,7 +238,8 @@ def _points(position_m: Numbers, offset: int) -> list[str]:
 
 
 def _locks(truss: ResolvedTruss) -> list[str]:
-    """Return the equations of guides and of locked sliders. CalculiX eliminates the first term, so it must be free."""
+    """Return the CalculiX equations of guides and locked sliders. Their first term is eliminated, so it must be free.
+    """
     lines: list[str] = []
     fixed, axes = truss.nodes.fixed, np.eye(3)
 

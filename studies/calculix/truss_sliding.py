@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A truss with slipping sliders in CalculiX along its temperature program, for small displacements.
+"""Computes a truss with slipping sliders in CalculiX along its temperature program (small displacements).
 
-Every bar and every slider is a separate brick along x. An equation sets the displacement of its end to the elongation
-of the bar, or to the slide. The brick of a slider is ideally plastic: it is stiff up to the friction limit and then
-yields at this force. A stop is a spring that acts beyond the clearance. Bricks are STRETCH times as long as their bars,
-with a modulus that keeps the stiffness. Their strains are thus STRETCH times smaller, because CalculiX treats strains
-as large if plasticity is used.
+Every bar and every slider is a separate brick along x. An equation sets the displacement of the brick's end to the
+elongation of the bar, or to the slip of the slider. The brick of a slider is ideally plastic: it is stiff up to the
+friction limit and then yields at this force. A stop is a spring that acts beyond the clearance. Bricks are STRETCH
+times as long as their bars, with a modulus that keeps the stiffness. Their strains are thus STRETCH times smaller,
+because CalculiX treats strains as large if plasticity is used.
 """
 from __future__ import annotations
 
@@ -75,7 +75,8 @@ def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quanti
 
 
 def _small(truss: ResolvedTruss) -> ResolvedTruss:
-    """Return the truss with temperatures, loads, friction and clearances times STEP, and so nearly its path too."""
+    """Return the truss with temperatures, loads, friction and clearances times STEP; its path then scales nearly alike.
+    """
     sliders = truss.sliders
     return replace(
         truss, nodes=replace(truss.nodes, force_N=STEP * truss.nodes.force_N),
@@ -86,7 +87,7 @@ def _small(truss: ResolvedTruss) -> ResolvedTruss:
 
 
 def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
-    """Return the times [s] between which all programs are linear, over all cycles."""
+    """Return the corner times [s] of all cycles; between two corners all temperature programs are linear."""
     for program in truss.programs:
         if program.shape not in ("triangle", "table") and np.any(range_K(program)):
             raise NotAllowed("thermal.shape", program.shape, code="fe_slider_shape")
@@ -106,7 +107,7 @@ def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
 
 @dataclass
 class Bricks:
-    """Bricks with a section of 1 m², and equations of their ends.
+    """Brick elements with a cross-section of 1 m², and equations for their ends.
 
     :param truss: the truss; its nodes have the first numbers
     """
@@ -125,7 +126,7 @@ class Bricks:
     def brick(self, length: float, modulus: float, expansion: float, bound: float | None) -> int:
         """Add a brick; return the node at its end that moves along x.
 
-        :param bound: force [N] at which it yields; None: elastic
+        :param bound: force [N] at which the brick yields; None: it stays elastic
         """
         self.element += 1
         corner, element = self.first, self.element
@@ -146,8 +147,8 @@ class Bricks:
         return corner + 1
 
     def tie(self, end: int | None, ends: Sequence[tuple[int, float]], along: Numbers) -> None:
-        """Add the equation "displacement of a brick's end (None: 0) = signed sum of node displacements along a
-        direction"."""
+        """Add the equation "displacement of a brick's end (0 without a brick) = signed sum of node displacements along
+        a direction"."""
         terms = [(int(node) + 1, axis + 1, -sign * float(along[axis])) for node, sign in ends for axis in range(3)
                  if along[axis] and not self.truss.nodes.fixed[node, axis]]
         if end is None:
@@ -160,7 +161,7 @@ class Bricks:
 
 
 def _bars(bricks: Bricks, stiffness: Numbers) -> list[int]:
-    """Add the bricks of the links; return the first corner of each."""
+    """Add the bricks of the links; return the first corner node of each brick."""
     links, positions = bricks.truss.links, bricks.truss.nodes.position_m
     corners_of = []
     for place, (one, two) in enumerate(links.nodes):
@@ -174,7 +175,8 @@ def _bars(bricks: Bricks, stiffness: Numbers) -> list[int]:
 
 
 def _sliders(bricks: Bricks, rigid: float) -> list[tuple[int, float, float]]:
-    """Add the bricks of sliders; return, for each slider with a stop, the end of its brick and both clearances [m]."""
+    """Add the bricks of the sliders; for each slider with stops, return the end node of its brick and both clearances
+    [m]."""
     truss, sliders = bricks.truss, bricks.truss.sliders
     friction = sliders.friction_coefficient * sliders.normal_force_N
     sticks = np.full(len(friction), rigid)
@@ -198,7 +200,7 @@ def _sliders(bricks: Bricks, rigid: float) -> list[tuple[int, float, float]]:
 
 
 def deck(truss: ResolvedTruss, times: list[float]) -> list[str]:
-    """Return the deck of a truss with sliders, heated along its programs."""
+    """Return the deck of a truss with sliders, heated along its temperature programs."""
     nodes, links = truss.nodes, truss.links
     stiffness = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
     rigid, longest = STICK * float(stiffness.max()), float(links.stress_free_length_m.max())

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes docs/reference/decks.md: the use of every card and field of a deck, from the tables of the import.
+"""Writes docs/reference/decks.md from the tables of the importer: how it uses every card and field of a deck.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_decks.py
 

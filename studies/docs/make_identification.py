@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables and pictures of docs/validation/identification.md: noisy loops of known joints from other models, identified.
+"""Makes tables and pictures of docs/validation/identification.md: joints identified from noisy loops of known joints.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_identification.py [--repetitions N] [--choices N]
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_identification.py --random N
 
-The contact kernel, the closed form, the truss solver or YADE computes each loop once; every repetition adds other noise
-to the force. ``--random`` instead draws joints with play and with soft stops, and paths of constant, growing or
-shrinking cycles. 500 repetitions take about half an hour on one core, 300 random loops fifteen minutes.
+Another model (contact kernel, closed form, truss solver or YADE) computes each loop once; every repetition adds new
+noise to the force. ``--random`` instead draws random joints with play and soft stops, and displacement paths with
+constant, growing or shrinking cycles. 500 repetitions take about half an hour on one core, 300 random loops fifteen
+minutes.
 """
 from __future__ import annotations
 
@@ -41,11 +42,11 @@ EXPANSION_m_per_K = 23.4e-6 * 0.5
 
 @dataclass(frozen=True)
 class Known:
-    """A loop of a known joint.
+    """A loop of a joint with known parameters.
 
-    :param name: its origin
-    :param model: the joint to fit
-    :param true: true parameters of the joint
+    :param name: origin of the loop
+    :param model: the joint model to fit
+    :param true: true parameters
     """
 
     name: str
@@ -66,7 +67,7 @@ class Known:
 
 
 def kernel(law: str, model: str) -> Known:
-    """Return a contact under 10 N on cycles of slide with the amplitude 2.5 μN/k."""
+    """Return the loop of a contact kernel under 10 N, slid cyclically with the amplitude 2.5 μN/k."""
     young, shear, radius, mu, load = 38.5e9, 7.9e9, 0.01, 0.3, 10.0
     stiffness = 8 * shear * (3 * load * radius / (4 * young)) ** (1 / 3)
     reach = 2.5 * mu * load / stiffness
@@ -79,9 +80,9 @@ def kernel(law: str, model: str) -> Known:
 
 
 def bar_on_a_slider() -> Known:
-    """Return Table 1 with nearer stops and a spring at its block, by the closed form; the expansion of the bar is the
-    displacement. The bar is a hundred times longer and thicker, so that its expansion reduces its stiffness by only
-    2e-5."""
+    """Return the closed-form loop of Table 1 with nearer stops and a spring at its block; the displacement is the
+    thermal expansion of the bar. The bar is a hundred times longer and thicker, so that its expansion reduces its
+    stiffness by only 2e-5."""
     case = sj.load("table1").changed({
         **TABLE, "link.stress_free_length_m": 50.0, "link.cross_section_area_m2": 9e-4,
         "link.thermal_expansion_per_K": 23.4e-8, "joint.clearance_minus_m": 5e-4, "joint.clearance_plus_m": 8e-4,
@@ -95,8 +96,8 @@ def bar_on_a_slider() -> Known:
 
 
 def sliders_of_a_truss() -> Known:
-    """Return a hundred parallel sliders behind springs, by the truss solver: half of them with the slip density of an
-    Iwan joint, at midpoints of equal stiffness, the others at the end of the density."""
+    """Return the loop of a hundred parallel sliders behind springs, by the truss solver. Half of them slip at forces of
+    an Iwan joint's density, at midpoints of equal stiffness; the others slip at its end."""
     exponent, ratio, last, count = -0.5, 1.0, 3e-4, 100
     share = (np.arange(count // 2) + 0.5) / (count // 2)
     slides = last * np.concatenate((share ** (1 / (exponent + 1)), np.ones(count - count // 2)))
@@ -114,7 +115,8 @@ def sliders_of_a_truss() -> Known:
 
 
 def slider_in_yade() -> Known:
-    """Return Table 1 without stops in the DEM: the Mindlin stiffness of the pad is in series with that of the bar."""
+    """Return the loop of the paper's Table 1 without stops in the DEM: pad (Mindlin stiffness) and bar are in series.
+    """
     case = sj.load("table1").changed({**TABLE, "joint.clearance_minus_m": 1e-2, "joint.clearance_plus_m": 1e-2,
                                       "dem.samples_per_cycle": 500, "thermal.period_s": 5.0})
     run = case.dem(progress=sys.stderr.isatty()).frame()
@@ -135,7 +137,7 @@ LOOPS: dict[str, Callable[[], Known]] = {
 
 
 def repeated(known: Known, repetitions: int) -> dict[str, int]:
-    """Return the number of repetitions in which the interval of each parameter contains its true value."""
+    """Return, for each parameter, the number of repetitions in which its interval contains the true value."""
     inside = dict.fromkeys(known.true, 0)
     for repetition in range(repetitions):
         count(inside, known.true, known.measured(repetition), known.model)
@@ -152,7 +154,7 @@ def count(inside: dict[str, int], true: dict[str, float], columns: dict[str, np.
 def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tuple[dict[str, float], dict[
     str, np.ndarray
 ]]:
-    """Return a joint and its loop from rest: 600 rows, 2 to 5 cycles, noise of 2 % of half the force range."""
+    """Return a random joint and its loop from rest: 600 rows, 2 to 5 cycles, noise of 2 % of half the force range."""
     stiffness, friction = 10 ** rng.uniform(5.5, 6.5), rng.uniform(50, 300)
     true = {"stiffness": stiffness, "friction": friction, "preload": rng.uniform(-20, 20)}
     amplitude = rng.uniform(4, 8) * friction / stiffness
@@ -174,7 +176,8 @@ def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tup
 
 
 def random_joints(loops: int) -> None:
-    """Print the coverage of intervals for random loops, a ninth of them for each combination of joint and noise."""
+    """Print how often intervals cover the true value for random loops, one ninth for each combination of joint and
+    noise."""
     rows = []
     for model in ("coulomb_play", "coulomb_soft_play", "coulomb_soft_stops"):
         for correlation in (0.0, 0.5, 0.9):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes each kind of mistake, runs the command on it and writes the message to docs/reference/mistakes.md.
+"""Makes each kind of mistake in a case file, runs the command and writes its message to docs/reference/mistakes.md.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_mistakes.py
 
@@ -164,7 +164,7 @@ def _code(text: str) -> str:
 
 
 def _rows(group: str, mistakes: tuple[Mistake, ...]) -> list[str]:
-    """Make the mistakes of a group in the working folder; return the section of the page."""
+    """Make the mistakes of a group in the working folder; return their section of the page."""
     lines = [f"## {group}\n\n| mistake | command | in | instead of | message |\n|---|---|---|---|---|"]
     for mistake in mistakes:
         name = Path(mistake.case).name + ".toml"
@@ -198,7 +198,7 @@ def table() -> str:
 
 
 def _as_json() -> list[str]:
-    """Return failures as JSON: an invalid value, a mechanism, a run in YADE."""
+    """Return three failures as JSON messages: an invalid value, a mechanism, a failed run in YADE."""
     import statejump as sj
     from statejump.core.errors import to_json
 
@@ -244,7 +244,7 @@ def _codes() -> list[str]:
 
 
 def _reasons_of_meshes() -> list[str]:
-    """Return why a mesh is rejected, with the sentence of each reason."""
+    """Return the reasons for which a mesh is rejected, with the message of each reason."""
     from statejump import _engine
 
     lines = ["## Meshes of bores\n\nThe detail `reason` says why a mesh has one of the codes `bore_…`. Names in braces "

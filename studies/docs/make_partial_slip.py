@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures and table of docs/validation/partial_slip.md: eleven cases against closed forms and against many punches.
+"""Makes pictures and table of docs/validation/partial_slip.md: eleven cases, compared with closed forms and with a
+model of many flat punches.
 
-    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_partial_slip.py
+PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_partial_slip.py
 """
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ PUNCHES = 20000
 
 @dataclass(frozen=True)
 class Case:
-    """A branch between two points (N, T) in units of LOAD, after a path to the first point."""
+    """A branch between two points (normal force N, tangential force T) in units of LOAD, after a path to the first
+    point."""
 
     name: str
     path: tuple[tuple[float, float], ...]
@@ -52,12 +54,12 @@ def depth_m(load: float) -> float:
 
 
 def first_loading_m(load: float, force: float, before: float = 0.0) -> float:
-    """Return the slide [m] of a first loading to ``force`` under ``load``: mu kappa (delta - delta_c)."""
+    """Return the tangential displacement [m] when ``force`` first acts under ``load``: mu kappa (delta - delta_c)."""
     return MU * KAPPA * (depth_m(load) - depth_m(load - (force - before) / MU))
 
 
 def closed_form_m(place: int, path: tuple[tuple[float, float], ...]) -> float | None:
-    """Return the slide [m] at the end of a case; None if the formula is a sum of cases."""
+    """Return the tangential displacement [m] at the end of a case; None for a case without a closed form here."""
     def masing(change: float) -> float:
         return 2 * first_loading_m(1, change / 2)
 
@@ -75,7 +77,7 @@ def closed_form_m(place: int, path: tuple[tuple[float, float], ...]) -> float | 
 
 
 def punches_N(answer: dict[str, np.ndarray]) -> float:
-    """Return the force [N] of many parallel flat punches at the end of a path of depth and slide."""
+    """Return the tangential force [N] of many parallel flat punches at the end of a path of depth and slide."""
     depth, slide = answer["penetration_depth_m"], answer["slide_m"]
     stiffness = 8 * SHEAR * np.sqrt(RADIUS * depth.max())
     x = (np.arange(PUNCHES) + 0.5) * stiffness / PUNCHES

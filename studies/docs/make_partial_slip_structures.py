@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picture and tables of docs/validation/partial_slip_structures.md: state jumps from microslip to gross slip.
+"""Makes picture and tables of docs/validation/partial_slip_structures.md: state jumps from microslip to gross slip.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_partial_slip_structures.py [--dem]
 
@@ -40,25 +40,25 @@ LABELS = {"rigid": "Coulomb", "elastic": "spring under Coulomb's limit", "partia
 
 
 def path(document: dict[str, Any], sticking: str, increments: int = INCREMENTS, **options: Any) -> solve.TrussPath:
-    """Return the path of a generated truss with one model of sticking."""
+    """Return the quasi-static path of a generated truss with the given model of sticking."""
     truss = parse_case(document | {"reduced": {"sticking": sticking}}).resolve()
     return solve.path(truss, increments_per_branch=increments, cycle_ends_only=True, **options)
 
 
 def moves_m(found: solve.TrussPath) -> np.ndarray:
-    """Return the displacement [m] over each cycle of the node that moves most in it."""
+    """Return the displacement [m] over each cycle, of the node with the largest displacement in that cycle."""
     moved = np.diff(found.cycle_ends["displacement_m"], axis=0)
     most: np.ndarray = np.linalg.norm(moved, axis=2).max(axis=1)
     return most
 
 
 def bar(change_K: float, **more: Any) -> dict[str, Any]:
-    """Return the document of Table 1's bar on a slider, without stops."""
+    """Return the case document of the bar on a slider of the paper's Table 1, without stops."""
     return generate.chain(1, friction_force_N=FRICTION_N, temperature_change_K=change_K, **more)
 
 
 def constants() -> tuple[float, float, float]:
-    """Return stiffness of the bar, of its contact [N/m], and free expansion [m/K]."""
+    """Return the stiffnesses of the bar and of its contact [N/m], and the free expansion [m/K]."""
     arrays = solve.engine_items(parse_case(bar(1.0) | {"reduced": {"sticking": "elastic"}}).resolve())
     links, slider = arrays["elements"]["links"], arrays["joints"]["slider"]
     length = links["stress_free_length_m"][0]
@@ -67,8 +67,8 @@ def constants() -> tuple[float, float, float]:
 
 
 def closed_form_m(change_K: float) -> float:
-    """Return the jump of the bar [m] from Cattaneo's loading and Masing's unloading, both in equilibrium with the bar,
-    whose stiffness E A/l follows its length."""
+    """Return the jump of the bar [m] from Cattaneo's loading and Masing's unloading. Both are in equilibrium with the
+    bar, whose stiffness E A/l follows its length."""
     stiffness, contact, expansion = constants()
     gross, strain = 1.5 * FRICTION_N / contact, expansion / TABLE1_LENGTH_M * change_K
 
@@ -84,14 +84,14 @@ def closed_form_m(change_K: float) -> float:
 
 
 def asymptote_m(change_K: float) -> float:
-    """Return the jump of the bar for small amplitudes [m], k² s²/(12 f (k + K)), with s the slide of the spring."""
+    """Return the jump of the bar [m] for small amplitudes, k² s²/(12 f (k + K)), where s is the slide of the spring."""
     stiffness, contact, expansion = constants()
     slide = expansion * change_K * stiffness / (contact + stiffness)
     return contact**2 * slide**2 / (12 * FRICTION_N * (contact + stiffness))
 
 
 def dem_m(change_K: float) -> float:
-    """Return the jump of the bar in YADE [m], over one cycle of 0.5 s, relative to the static start."""
+    """Return the jump of the bar in YADE [m] over one cycle of 0.5 s, relative to the static start state."""
     made = bar(change_K, period_s=0.5)
     made |= {"reduced": {"sticking": "partial_slip"}, "dem": {"friction_law": "mindlin_deresiewicz"}}
     history = sj.load(made).dem()["displacement_m"]
@@ -99,7 +99,8 @@ def dem_m(change_K: float) -> float:
 
 
 def beside_the_dem(name: str, runs: Sequence[tuple[dict[str, Any], dict[str, float]]]) -> None:
-    """Print the results of `statejump compare` for a structure, one row per case and keys of its section [dem]."""
+    """Print the results of `statejump compare` for a structure, one row per case and set of keys of its section [dem].
+    """
     print(f"\n| {name}: period [s] | `[dem]` | jumps: largest difference over the largest "
           "| energy residue over friction | missed |\n|---:|---|---:|---:|---|")
     for document, keys in runs:
@@ -116,7 +117,7 @@ def beside_the_dem(name: str, runs: Sequence[tuple[dict[str, Any], dict[str, flo
 
 
 def rib(change_K: float, **more: Any) -> dict[str, Any]:
-    """Return the document of the rib whose joint rolls in rigid theory."""
+    """Return the case document of the rib whose joint rolls without slip if contact is rigid."""
     return generate.umbrella(1, friction_coefficient=0.45, temperature_change_K=change_K, **more)
 
 
@@ -190,7 +191,7 @@ def main() -> None:
 
 
 def told(name: str, changes_K: np.ndarray, jumps_m: np.ndarray) -> None:
-    """Print the exponents with which a jump grows with the amplitude at both ends of its range."""
+    """Print the exponents of the growth of the jump with the amplitude, at both ends of the amplitude range."""
     slopes = np.diff(np.log(jumps_m)) / np.diff(np.log(changes_K))
     print(f"\n{name}: jump grows with the power {slopes[0]:.3f} of the amplitude at {changes_K[0]:.3g} K, "
           f"{slopes[-1]:.3f} at {changes_K[-1]:.3g} K")

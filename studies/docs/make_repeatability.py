@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table of docs/howto/surface.md: repeatability of an umbrella of eight ribs, by the number of days in its history.
+"""Makes the table of docs/howto/surface.md: repeatability of an umbrella with eight ribs over the days of its history.
 
-    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_repeatability.py [--samples N]
+PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_repeatability.py [--samples N]
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TOLERANCES = {  # as made: every joint on its own
 
 
 def days(peaks_K: tuple[int, ...]) -> sj.Case:
-    """Return the umbrella with a program of days with these peaks, one second each."""
+    """Return the umbrella with a program of days with the given peak temperatures, one second each."""
     changes = [0, *(change for peak in peaks_K for change in (peak, 0))]
     return sj.load(CASE).changed({
         "thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.period_s": None,

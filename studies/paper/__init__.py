@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Studies of the paper: figures and claims, slow heating, a joint at constant load, energy account."""
+"""Studies for the paper: its figures and claims, slow heating, a joint at constant load, energy account."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump figures``, ``slow``, ``hold`` and ``energy``: the studies of the paper's umbrella rib; ``convergence``:
-that of its spring-slider. The command finds them in the repository; ``python3 -m studies.paper figures`` needs only the
-package."""
+"""``statejump figures``, ``slow``, ``hold`` and ``energy``: studies of the paper's umbrella rib. ``convergence``: the
+study of its spring-slider. The command ``statejump`` finds them in the repository; ``python3 -m studies.paper figures``
+needs only the package."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -57,7 +57,8 @@ def _print(done: Any, console: Console) -> None:
 
 @contextmanager
 def _part(console: Console, text: str, runs: int) -> Iterator[Callable[[], None]]:
-    """Yield a function to call after each run: it moves a bar on a terminal, and elsewhere prints one line per part."""
+    """Yield a function to call after each run: on a terminal it moves a progress bar, elsewhere it prints a line per
+    part."""
     if not console.is_terminal:
         console.print(f"{text}: {runs} runs")
         yield lambda: None

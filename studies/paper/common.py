@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Code shared by the studies of the paper: refusal of a case, and the command on each page."""
+"""Code shared by the studies of the paper: the rejection of a case, and the command named on each page."""
 from __future__ import annotations
 
 import os
@@ -17,8 +17,8 @@ def refused(case: Case, key: str, value: Any, cause: str) -> NotAllowed:
 
 
 def made_by(command: str, case: Case) -> str:
-    """Return the command that makes a page again. It names the case file relative to the current folder, or by its
-    shipped name; it names none if the case was made or changed in Python."""
+    """Return the command that makes a page again. It names the case file relative to the current folder, or a shipped
+    case by its name. It names no case that was made or changed in Python."""
     origin = case.origin
     if origin.file is None or not origin.text:
         return f"statejump {command}"

@@ -73,7 +73,8 @@ class Convergence:
 
 
 def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSliderCase:
-    """Return the case with its cycle duration times ``factor``, and the time step as a fraction of the stable step."""
+    """Return the case with ``factor`` times its cycle duration, and with a time step as a fraction of the stable step.
+    """
     changes = {f"dem.{key}": value for key, value in settings.items()} | {"dem.time_step_s": None}
     times = case.thermal.table_time_s
     if times is None:
@@ -93,7 +94,7 @@ def _further(values: Sequence[float], decades: int) -> list[float]:
 
 
 def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSliderCase], list[SpringSliderCase]]:
-    """Return the cases to run: each period with the time step of the case, and each step on a fast cycle."""
+    """Return the cases to run: each period with the time step of the case, and each time step on a fast cycle."""
     return (
         [_variant(case, factor) for factor in _further(PERIOD_FACTORS, decades)],
         [_variant(case, STEP_PERIOD_FACTOR, samples_per_cycle=STEP_SAMPLES, time_step_fraction=fraction)
@@ -104,7 +105,7 @@ def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSlide
 def convergence(case: SpringSliderCase, on_progress: OnProgress = lambda share: None, decades: int = 0) -> Convergence:
     """Run the DEM with slower cycles, then with shorter steps.
 
-    :param decades: extension beyond the default, 0 to 3; every decade takes ten times as long
+    :param decades: decades of slowness beyond the default, 0 to 3; every decade takes ten times as long
     :param on_progress: called with the finished fraction, 0 to 1
     :raises StatejumpError: a run failed
     """
@@ -165,8 +166,8 @@ def _row(case: SpringSliderCase, run: Run) -> Row:
 
 
 def explanation(found: Convergence) -> list[str]:
-    """Return lines that explain the numbers: errors that decrease with slower cycles and shorter steps, and remaining
-    errors."""
+    """Return lines that explain the numbers: errors decrease with slower cycles and shorter steps, up to a remaining
+    error."""
     return ["First the duration of the cycle, then the time step (on a fast cycle, where it matters most).", "",
             *_of_cycles(found.slower), *_of_steps(found), "", *_what_stays(found)]
 

@@ -87,7 +87,7 @@ class Variant:
 
 
 def variants(case: UmbrellaCase) -> list[Variant]:
-    """Return the case and a variant without friction and damping whose links vibrate."""
+    """Return the case, and a variant of it without friction and damping whose links vibrate."""
     if case.thermal.shape == "table":
         raise refused(case, "thermal.shape", "table", "'statejump energy' shortens the period")
     if case.thermal.temperature_change_max_K == 0:
@@ -117,7 +117,7 @@ def variants(case: UmbrellaCase) -> list[Variant]:
 
 
 def with_steps(case: UmbrellaCase, steps_per_second: float) -> UmbrellaCase:
-    """Return the case with this number of steps per second in both models."""
+    """Return the case with the given number of time steps per second in both models."""
     steps = SAMPLES * max(1, round(case.period_s * steps_per_second / SAMPLES))
     return with_values(case, {"reduced.steps_per_cycle": steps, "dem.steps_per_cycle": steps})
 
@@ -130,7 +130,7 @@ def residue_J(columns: Columns | Run, sample: int = -1) -> float:
 
 
 def instants(case: UmbrellaCase, finest: Run) -> dict[str, int]:
-    """Return the samples at which the account is evaluated, from the finest run."""
+    """Return the samples at which the energy account is evaluated, from the run with the finest steps."""
     hottest = largest_temperature(finest)
     found = {INSTANTS[1]: max(hottest - 1, 1), INSTANTS[2]: len(finest) - 1}
     first = finest.events.first("first_contact")
@@ -152,7 +152,8 @@ def rounding_J(case: UmbrellaCase) -> float:
 
 
 def corner_W(case: UmbrellaCase) -> float:
-    """Return the power of the dashpots [W] right after a corner of a triangle, c (2 dl/dt)^2 of both links."""
+    """Return the power of the dashpots of both links [W], c (2 dl/dt)^2, just after a reversal of a triangular
+    temperature program."""
     if case.thermal.shape != "triangle":
         return 0.0
     rate = abs(float(case.thermal_program().temperature_rate(0.0)))
@@ -167,7 +168,7 @@ def corner_W(case: UmbrellaCase) -> float:
 
 
 def with_orders(rows: Sequence[Row], floor: float) -> list[Row]:
-    """Add the orders of convergence to rows of one model at one instant, from coarse to fine."""
+    """Add the orders of convergence to the rows of one model at one instant, sorted from coarse to fine time steps."""
     above = [row for row in rows if abs(row.residue_over_thermal_work) > floor]
     fit = None
     if len(above) > 1:
@@ -189,7 +190,7 @@ def with_orders(rows: Sequence[Row], floor: float) -> list[Row]:
 
 @dataclass(frozen=True)
 class Sampled:
-    """A run of one model with its steps per second, or with its tolerance."""
+    """A run of one model, with its time steps per second or its tolerance."""
 
     model: str
     steps_per_second: float
@@ -379,7 +380,7 @@ def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Accou
 
     :param results: root of the results; gets a folder named after the case
     :param on_progress: receives the finished fraction, 0 to 1
-    :raises NotAllowed: the study does not fit the case
+    :raises NotAllowed: the study does not support the case
     """
     chosen = variants(case)
     with results.folder(case.name, case) as folder:

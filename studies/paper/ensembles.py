@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ensembles of the rib on all cores: the same case from initial positions in a small disc, in both models."""
+"""Runs ensembles of the rib on all cores: one case from initial positions in a small disc, in both models."""
 from __future__ import annotations
 
 import os
@@ -19,8 +19,8 @@ T, R = TypeVar("T"), TypeVar("R")
 
 
 def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
-    """Yield positions of the journal near the start (2) [m], evenly spread over a disc. They depend only on the seed;
-    the first positions are the same for any count."""
+    """Yield offsets (2) [m] of the journal's initial position, evenly spread over a disc. They depend only on the seed;
+    the first offsets are the same for any number of runs."""
     for index in range(count):
         generator = np.random.default_rng([case.ensemble.seed, index])
         radius = case.ensemble.start_spread_m * np.sqrt(generator.random())
@@ -49,12 +49,12 @@ class EnsembleOfRuns:
 
     @property
     def jump_rad(self) -> np.ndarray:
-        """θ2 at the end minus θ2 at the start of every run (runs)."""
+        """Jump (runs) [rad] of every run: θ2 at the end minus θ2 at the start."""
         return self.deflection_rad[:, -1]
 
 
 def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
-    """Return the case with the time steps of its ensemble in both models."""
+    """Return the case with the time steps that its ensembles use in both models."""
     return with_values(
         case,
         {
@@ -76,7 +76,7 @@ def gather(runs: Sequence[Columns | Run]) -> EnsembleOfRuns:
 
 
 def _at_once(items: Iterable[T], run: Callable[[T], R], progress: Callable[[], None]) -> list[R]:
-    """Run each item, as many at a time as there are cores; results are in the given order.
+    """Run each item, with one process per core; results are in the order of the items.
 
     :param progress: called after each item
     """
@@ -93,7 +93,7 @@ def _at_once(items: Iterable[T], run: Callable[[T], R], progress: Callable[[], N
 def ensemble(
     case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
 ) -> EnsembleOfRuns:
-    """Run the reduced model from ``runs`` starts (default: the number in the case), on all cores.
+    """Run the reduced model from ``runs`` initial positions (default: the number in the case), on all cores.
 
     The result does not depend on the number of cores.
     """
@@ -120,7 +120,7 @@ def execute_all(cases: Sequence[UmbrellaCase], progress: Callable[[], None] = la
 def dem_ensemble(
     case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
 ) -> EnsembleOfRuns:
-    """Run the case in YADE from ``runs`` starts (default: the number in the case), on all cores."""
+    """Run the case in YADE from ``runs`` initial positions (default: the number in the case), on all cores."""
     offsets = start_offsets(case, runs or case.ensemble.dem_runs)
     fine = for_ensemble(case)
     return gather(_at_once(offsets, lambda offset: dem.execute(fine, offset).columns, progress))

@@ -79,8 +79,8 @@ class Hold:
 
 
 def held(case: UmbrellaCase, period_s: float = PERIOD_s) -> UmbrellaCase:
-    """Return the case at constant temperature. The contact is at half the friction angle unless the case sets it.
-    :raises NotAllowed: the joint is unloaded"""
+    """Return the case at constant temperature. The contact starts at half the friction angle unless the case sets its
+    position. :raises NotAllowed: the joint is unloaded"""
     if case.start.mode != "loaded":
         raise refused(case, "start.mode", case.start.mode,
                       "'statejump hold' needs 'loaded', with a biased torsion spring")
@@ -101,7 +101,7 @@ def held(case: UmbrellaCase, period_s: float = PERIOD_s) -> UmbrellaCase:
 
 
 def by_law(case: UmbrellaCase, law: str, steps_per_second: int) -> UmbrellaCase:
-    """Return the held case with a friction law and a number of steps."""
+    """Return the case at constant temperature with a friction law and a number of time steps."""
     samples = case.output.samples_per_cycle
     steps = samples * math.ceil(case.period_s * steps_per_second / samples)
     return with_values(
@@ -123,7 +123,7 @@ def _measure(case: UmbrellaCase, name: str, steps_per_second: int, history: Run)
 
 
 def _arc(case: UmbrellaCase, angle: np.ndarray, theta2: np.ndarray, theta4: np.ndarray) -> np.ndarray:
-    """Return the slide since the first entry [m]. Differences are formed first, to avoid rounding."""
+    """Return the slide of a run since its first sample [m]. Differences are formed before the sum, against rounding."""
     joint = case.joint
     return (
         joint.radial_clearance_m * (angle - angle[0])
@@ -139,7 +139,7 @@ def run_reduced(case: UmbrellaCase, law: str, steps_per_second: int) -> Hold:
 
 
 def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Callable[[], None]) -> list[Hold]:
-    """Run the held case in the DEM, by law and steps per second."""
+    """Run the case at constant temperature in the DEM, with a friction law and steps per second."""
     wanted = [by_law(case, law, rate) for law, rate in cases]
     runs = ensembles.execute_all(wanted, finished)
     return [
@@ -149,7 +149,7 @@ def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Call
 
 @dataclass(frozen=True)
 class Prediction:
-    """Predicted creep with ``ambrosio`` and first slide of a fresh contact with ``mindlin``."""
+    """Predictions: creep with friction law ``ambrosio``, and first slide of a fresh contact with ``mindlin``."""
 
     time_s: np.ndarray
     contact_angle_rad: np.ndarray
@@ -158,13 +158,14 @@ class Prediction:
 
     @property
     def creep_rate_m_per_s(self) -> float:
-        """Absolute rate over the interval in which that of the runs is measured."""
+        """Absolute predicted creep rate, over the interval in which that of the runs is measured."""
         first, last = np.interp([RATE_FROM_s, RATE_TO_s], self.time_s, np.abs(self.slide_m))
         return float((last - first) / (RATE_TO_s - RATE_FROM_s))
 
 
 def predict(case: UmbrellaCase) -> Prediction:
-    """Predict the creep of massless rigid links: the angle is the independent variable, time follows by quadrature."""
+    """Predict the creep of massless rigid links. The angle is the independent variable; the time results by quadrature.
+    """
     linkage, joint = model.linkage(case), case.joint
     start = case.start.contact_angle_rad
     state = _engine.loaded_state(linkage, start)
@@ -228,7 +229,7 @@ def figure(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: 
 
 
 def creep_rate_at_start(case: UmbrellaCase) -> float:
-    """Return v0 + (v1 - v0) T/(mu F_N) [m/s] at the initial angle."""
+    """Return the creep rate v0 + (v1 - v0) T/(mu F_N) [m/s] at the initial angle, T the tangential force."""
     joint = case.joint
     load = math.tan(abs(case.start.contact_angle_rad)) / joint.friction_coefficient
     return joint.friction_v0_m_per_s + (joint.friction_v1_m_per_s - joint.friction_v0_m_per_s) * load
@@ -277,7 +278,7 @@ def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, command: 
 
 @dataclass(frozen=True)
 class Held:
-    """Runs of a joint held at constant temperature, and the written files."""
+    """Runs of a joint held at constant temperature, and the files written from them."""
 
     case: UmbrellaCase
     runs: Sequence[Hold]

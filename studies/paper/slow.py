@@ -85,7 +85,7 @@ class Row:
 
 
 def at_period(case: UmbrellaCase, period_s: float) -> UmbrellaCase:
-    """Return the case with another period and the same steps per second in both models."""
+    """Return the case with another period and unchanged time steps per second in both models."""
     steps = SAMPLES * math.ceil(period_s * STEPS_PER_SECOND / SAMPLES)
     return with_values(
         case,
@@ -106,7 +106,8 @@ def jumps(run: Run) -> tuple[float, float]:
 
 
 def _parts(case: UmbrellaCase) -> bool:
-    """Return whether the program closes the clearance, so that an unbiased joint is loaded and opens again."""
+    """Return whether the temperature program closes the clearance, so that an unbiased joint is loaded and opens again.
+    """
     if case.link_ab.thermal_expansion_per_K != case.link_bc.thermal_expansion_per_K:
         return False
     return model.linkage(case).first_contact_temperature_change() < case.temperature_range_K[1]
@@ -190,7 +191,7 @@ def _rows_of(block: Block, name: str, periods: Sequence[float], found: Sequence[
 def study(
     chosen: Sequence[Block], on_progress: OnProgress, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
 ) -> list[Row]:
-    """Run all blocks in both models. The longest DEM runs start first, one per core."""
+    """Run every block (a variant with its periods) in both models. The longest DEM runs start first, one per core."""
     pairs = [(block, period) for block in chosen for period in block.dem_periods_s]
     pairs.sort(key=lambda pair: -pair[1])
     total = sum(len(block.dem_periods_s) for block in chosen) + len(chosen) * len(reduced_periods_s)
@@ -211,7 +212,7 @@ def study(
 
 
 def figure(case: UmbrellaCase, chosen: Sequence[Block], rows: Sequence[Row], folder: Path) -> list[Path]:
-    """Write ``slow.png`` and ``slow.svg``: distance from the quasi-static jump over the period."""
+    """Write ``slow.png`` and ``slow.svg``: distance of the jumps from the quasi-static jump, over the period."""
     with style():
         drawing, grid = panels(2, 2, (9.5, 7.4), sharex=True, squeeze=False)
         places = list(grid.flat)
@@ -285,7 +286,7 @@ def _cells(row: Row) -> list[str]:
 
 
 def closing(block: Block, rows: Sequence[Row]) -> str:
-    """Return a sentence with the largest distance between the models and the slowest run."""
+    """Return a closing sentence: the largest distance between the models, and the slowest run."""
     mine = {(row.model, row.period_s): row for row in rows if row.block == block.name}
     both = [period for name, period in mine if name == "DEM"]
     apart = max(
@@ -319,8 +320,8 @@ def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Slow:
 
     :param results: root of the results; gets a folder named after the case
     :param on_progress: receives the finished fraction, 0 to 1
-    :raises NotAllowed: the study does not fit the case
-    :raises FailedRun: statics does not determine the path
+    :raises NotAllowed: the study does not support the case
+    :raises FailedRun: equilibrium does not determine a unique path
     """
     chosen = blocks(case)
     with results.folder(case.name, case) as folder:

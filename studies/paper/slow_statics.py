@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limit of the jump for slow cycles, and the predicted deviation at a finite rate."""
+"""Limit of the jump for slow cycles, and predicted deviation from it at a finite rate."""
 from __future__ import annotations
 
 import math
@@ -19,7 +19,7 @@ ANGLES = ("theta2", "theta4")
 
 
 def quasi_static(case: UmbrellaCase) -> _engine.ElasticLoop:
-    """Return the path that is the limit of slow dynamics. :raises FailedRun: statics does not determine the path"""
+    """Return the path that is the limit of slow dynamics. :raises FailedRun: equilibrium does not determine it"""
     with engine("there is no quasi-static path", case=case.name):
         loop = _engine.elastic_loop(
             model.linkage(case), case.thermal_program(), case.start.contact_angle_rad, LOOP_SAMPLES,
@@ -46,9 +46,9 @@ def _cross(a: np.ndarray, b: np.ndarray) -> float:
 def equilibrium(
     case: UmbrellaCase, guess: dict[str, Any], couples_N_m: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return theta2 and theta4 [rad] of the slipping joint at ΔT = 0, with a couple on each link.
+    """Return theta2 and theta4 [rad] of the slipping joint at ΔT = 0, with an applied couple on each link.
 
-    :param guess: nearby point of the elastic loop; its F_t/F_N is kept
+    :param guess: nearby state of the elastic loop; its force ratio F_t/F_N is kept
     """
     frame = np.array([case.frame.length_m, 0.0])
     links = (case.link_ab, case.link_bc)
@@ -100,10 +100,10 @@ def equilibrium(
 
 
 def lag(case: UmbrellaCase, loop: _engine.ElasticLoop) -> tuple[float | None, float | None]:
-    """Return the predicted deviation of both jumps [rad], due to the damping couples of the pins at the end of the
-    program.
+    """Return the predicted deviations of the jumps of θ2 and θ4 [rad], caused by damping couples of the pins at the
+    program's end.
 
-    None if the joint does not slip there, because an earlier state then determines the jump.
+    None if the joint sticks at the end, because an earlier state then determines the jump.
     """
     last = loop.events[-1]
     path = loop.columns()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the state jump of the paper's rib (conclusion c): the kind ``umbrella`` extended by a control study. The
-command uses it as a user's kind::
+"""Control of the state jump of the paper's rib (conclusion c). The case kind ``umbrella`` is extended by a control
+study, which ``statejump`` loads as a user-defined kind::
 
     STATEJUMP_KINDS=studies.rib_control:KIND statejump control cases/umbrella_bias.toml
 """

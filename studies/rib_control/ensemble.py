@@ -49,8 +49,8 @@ def quantile(values: np.ndarray) -> float:
 def upper_bound(values: np.ndarray) -> float:
     """Return an upper bound of the 95 % quantile with 95 % confidence, for any distribution.
 
-    It is the r-th of n sorted values, with the smallest r such that, with this probability, at most r − 1 of n values
-    are below the quantile; for n < 59 it is the largest value.
+    The bound is the r-th of n sorted values. r is the smallest number for which at most r − 1 of n values are below the
+    quantile with a probability of 95 %. For n < 59 the bound is the largest value.
     """
     count = len(values)
     logarithms = [
@@ -64,7 +64,7 @@ def upper_bound(values: np.ndarray) -> float:
 def ensemble_measure(
     case: UmbrellaCase, runs: int, progress: Callable[[], None] = lambda: None
 ) -> dict[str, float]:
-    """Return mean, 95 % quantile and its upper bound of |jump| and of the largest |deflection| of θ2 [rad].
+    """Return mean, 95 % quantile and its upper bound, for |jump| and for the largest |deflection| of θ2 [rad].
 
     The initial states depend only on the seed of the case, so the result is reproducible.
     """
@@ -85,8 +85,8 @@ def ensemble_measure(
 def static_deflection_rad(case: UmbrellaCase) -> float:
     """Return the largest static |θ2 − θ2(0)| [rad] under the torsion spring, for rigid links and contact on AC.
 
-    The centres of the joint are d apart, so the links form a triangle with base |AC| − d: |AC| + c if the free flare
-    angle is larger, |AC| − c if it is smaller.
+    The links form a triangle whose base differs from |AC| by the clearance c. The base is |AC| + c if the free flare
+    angle needs a longer one, |AC| − c if it needs a shorter one.
     """
     largest, frame = 0.0, case.frame.length_m
     for change in case.temperature_range_K:
@@ -111,7 +111,7 @@ class _Ensembles:
         self.expected, self.done, self.on_progress = 1, 0, on_progress
 
     def check(self, values: dict[str, Any]) -> dict[str, float]:
-        """Return the measures of a larger ensemble from other initial states. :raises StatejumpError: a run failed"""
+        """Return the statistics of a larger ensemble from other initial states. :raises StatejumpError: a run failed"""
         return self({**values, "ensemble.seed": self.case.ensemble.seed + 1}, CHECK * self.runs)
 
     def __call__(self, values: dict[str, Any], runs: int | None = None) -> dict[str, float]:
@@ -154,7 +154,7 @@ def _ensemble_plan(case: UmbrellaCase) -> list[tuple[Any, ...]]:
 
 
 def _jump_quantile_rad(row: Row) -> float:
-    """Return the 95 % quantile of |jump|, infinite for a row that failed."""
+    """Return the 95 % quantile of |jump| in a row of a scan, infinite for a failed row."""
     found = row.results.get("jump_quantile_rad")
     return np.inf if found is None else found
 
@@ -221,9 +221,9 @@ class SpringFound:
 def smallest_spring(
     passes: Callable[[float], bool], scanned: Iterable[float]
 ) -> SpringFound | None:
-    """Scan springs, then bisect below the first one that passes; None: no spring passes.
+    """Scan spring stiffnesses, then bisect below the first one that passes the limit; None: no spring passes.
 
-    A statistic of chaotic runs need not decrease with the spring, so the result is the edge next to the first scanned
+    A statistic of chaotic runs need not decrease with the stiffness, so the result is the edge below the first scanned
     spring that passes.
     """
     springs = sorted(scanned)

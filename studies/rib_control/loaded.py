@@ -23,7 +23,7 @@ from studies.rib_control.parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRI
 
 @dataclass(frozen=True)
 class LoadedJump:
-    """Quasi-static jump of one design; None: the contact opens, or there is no equilibrium."""
+    """Quasi-static jump of one design; None: the contact opens, or no equilibrium exists."""
 
     rigid_rad: float | None
     elastic_rad: float | None
@@ -35,7 +35,7 @@ class LoadedJump:
 
     @property
     def size_rad(self) -> float | None:
-        """Jump by the model with elastic links or, if it is not available, with rigid links."""
+        """Jump [rad] from the model with elastic links or, if it is not available, with rigid links."""
         return self.elastic_rad if self.has_elastic else self.rigid_rad
 
     @property
@@ -49,7 +49,8 @@ def _slips(loop: Any) -> bool:
 
 
 def loaded_jump(case: UmbrellaCase) -> LoadedJump:
-    """Return the jump of θ2 on the quasi-static path, with rigid and, if the contact laws permit, elastic links.
+    """Return the jump of θ2 on the quasi-static path, with rigid links and, if the contact laws permit, with elastic
+    links.
 
     The friction law of the case determines the tangential compliance.
     """
@@ -81,10 +82,10 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
 
 
 def smallest_friction_that_rolls(case: UmbrellaCase) -> float | None:
-    """Return the smallest μ for which the loaded joint never slips in any model; None: it slips with the largest
-    allowed μ.
+    """Return the smallest μ for which the loaded joint slips in no model; None: it slips even with the largest allowed
+    μ.
 
-    A path without slip is the same for every larger μ, so there is a single threshold, found to 1e-9 of its value.
+    A path without slip does not change with larger μ, so there is a single threshold. It is found to 1e-9 of its value.
     """
 
     def rolls(friction: float) -> bool:
@@ -98,7 +99,7 @@ def smallest_friction_that_rolls(case: UmbrellaCase) -> float | None:
 def axial_forces_N(elastic: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the axial forces of AB and BC along a path [N], tension positive.
 
-    The joint force is parallel to AC, F on the bearing at the tip of AB and −F on the journal.
+    The joint force is parallel to AC: F acts on the bearing at the tip of AB, −F on the journal.
     """
     path = elastic.columns()
     force = np.hypot(path["normal_force_N"], path["tangential_force_N"]) * np.sign(path["eccentricity_x_m"])
@@ -141,7 +142,7 @@ def _loaded_row(case: UmbrellaCase, parameter: str, value: float) -> Row:
 
 
 def _loaded_size(case: UmbrellaCase, row: Row) -> float | None:
-    """Return the jump [rad] by the model with elastic links or, if it is not available, with rigid links."""
+    """Return the jump [rad] from the model with elastic links or, if it is not available, with rigid links."""
     return row.results.get("jump_elastic_rad" if has_elastic_loop(case) else "jump_rigid_rad")
 
 
@@ -244,7 +245,7 @@ def _loaded_friction(case: UmbrellaCase, result: Study) -> None:
 
 
 def _loaded_spring(case: UmbrellaCase, result: Study, wanted: float) -> None:
-    """Find the smallest K_M. It acts only through the elasticity of links and contact."""
+    """Find the smallest spring stiffness K_M. It acts only through the elasticity of links and contact."""
     sweep = result.sweep(SPRING)
     asked = f"{number(wanted * 1e6)} µrad"
     result.recommendation["stiffness_N_m_per_rad"] = None

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Control of the state jump of an ``umbrella`` case.
 
-A joint loaded by a biased torsion spring has one quasi-static path and one jump, see :mod:`.loaded`. Without this
+A joint loaded by a biased torsion spring has a unique quasi-static path and jump, see :mod:`.loaded`. Without this
 spring the motion after contact is chaotic, and only statistics of an ensemble are meaningful, see :mod:`.ensemble`.
 """
 from __future__ import annotations
@@ -18,10 +18,10 @@ def control(
     case: UmbrellaCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
-    """Study a rib.
+    """Study how to reduce the state jump of a rib.
 
-    :param jump_below: largest allowed jump of θ2 [rad]; None: half of that of the case
-    :param runs: size of the ensemble; None: the default. It must be None if no ensemble is run
+    :param jump_below: largest allowed jump of θ2 [rad]; None: half of the jump of the case
+    :param runs: size of the ensemble; None: the default. Must be None for a loaded joint
     :param choices: must be empty
     :raises StatejumpError: invalid input, or a run failed
     """

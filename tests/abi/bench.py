@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compiles probes against edited copies of the declared headers, and checks them in a running YADE."""
+"""Compiles test modules against edited headers that declare YADE's interface, and checks them in a running YADE."""
 from __future__ import annotations
 
 import json
@@ -58,7 +58,8 @@ class Compiler:
         return command + [f"-isystem{path}" for path in self.options.include]
 
     def object(self, source: Path, folder: Path | None = None) -> Path:
-        """Compile a source of the guard; generated headers in the folder precede those of the build."""
+        """Compile a source of the interface check; headers generated in the folder take precedence over those of the
+        build."""
         target = (folder or self.folder) / f"{source.stem}.o"
         first = [f"-I{folder}"] if folder else []
         self._run([*self._command(NO_ALIGNMENT, self.headers, first), "-c", str(source), "-o", str(target)])
@@ -105,8 +106,8 @@ class Yade:
         self._lock = threading.Lock()
 
     def ask(self, task: str, folder: Path) -> dict[str, Any]:
-        """Return the result of a task for the module in a folder; {"crash": status} if the process ended without a
-        result."""
+        """Run a task with the module in a folder; return its result, or {"crash": status} if the process ended without
+        one."""
         with self._lock:
             self._requests.write(json.dumps({"task": task, "folder": str(folder)}) + "\n")
             self._requests.flush()
@@ -121,7 +122,7 @@ class Yade:
 
 
 def edited(text: str, class_name: str | None, edits: list[tuple[str, str]], name: str) -> str:
-    """Return the text after each edit was applied exactly once, inside of the class."""
+    """Return the text of a header after each edit was applied exactly once inside of its class."""
     start, end = class_range(text, class_name) if class_name else (0, len(text))
     part = text[start:end]
     for old, new in edits:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside YADE and answers requests, one line of JSON each, until the input ends.
 
-A request names a module file and a task. It runs in a forked process, so that a module can crash and requests do not
-affect each other. If the process ends without an answer, the answer is its exit status.
+A request names a module file and a task. The task runs in a forked process, so that a module can crash and requests do
+not affect each other. If the process ends without an answer, its exit status is the answer.
 """
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def checks(folder: Path) -> dict[str, Any]:
 
 
 def scene(folder: Path) -> dict[str, Any]:
-    """Run all checks in a scene with everything that the guard might disturb."""
+    """Run all checks of YADE's interface in a scene with everything that they might disturb."""
     O.bodies.append([utils.sphere((0, 0, 0), 1), utils.sphere((0, 0, 1.9), 1)])
     O.engines = [
         ForceResetter(),
@@ -64,7 +64,7 @@ def scene(folder: Path) -> dict[str, Any]:
 
 
 def package(folder: Path) -> dict[str, Any]:
-    """Import the plugin's Python package with the probe as its native module."""
+    """Import the plugin's Python package, with the compiled test module as its native module."""
     sys.path.insert(0, str(folder))
     try:
         import statejump_yade  # noqa: F401

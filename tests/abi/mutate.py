@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutation test of the guard: every wrong declaration of YADE's interface must be refused.
+"""Mutation test of the guard (interface check): it must refuse every wrong declaration of YADE's interface.
 
-Every mutation is an edit of a copy of the declared headers. It is compiled without the static assertions. The guard
-inside a running YADE must report it, without build identifiers and before it calls any code of YADE. A crash does not
-count as a refusal. An edit that changes neither sizes nor members nor tables is replaced by another one.
+Every mutation edits a copy of the headers that declare the interface; the copy is compiled without static assertions.
+The guard inside a running YADE must report the mutation without build identifiers, before it calls any code of YADE. A
+crash is no refusal. An edit without effect on sizes, members and virtual function tables is replaced by another.
 """
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class Examination:
         self.description = said["description"]
 
     def examine(self, mutation: Mutation) -> tuple[str, str, str]:
-        """Return the check that detected a mutation, its message, and the fault of the guard (empty: none). The check
-        is "" for an edit without effect."""
+        """Return the check that detected a mutation, its message, and a fault of the interface check (empty: none). The
+        check is "" for an edit without effect."""
         place = self.compiler.folder / mutation.name.replace(" ", "_")
         headers = place / "include"
         try:
@@ -69,8 +69,8 @@ class Examination:
 
 
 def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return message and fault for the unchanged declarations, which must be accepted without change of the user's
-    scene."""
+    """Return message and fault of the interface check for unchanged declarations, which it must accept without change
+    of the user's scene."""
     place = compiler.folder / "unmutated"
     if compiler.static_asserts_refuse(compiler.headers):
         return "", "static assertions refuse it"
@@ -83,7 +83,8 @@ def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
 
 
 def other_build(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return message and fault for a library with an unknown build identifier: the message must contain a command."""
+    """Return message and fault of the interface check for a library with an unknown build identifier: the message must
+    contain a command."""
     place = compiler.folder / "other_build"
     package = place / "statejump_yade"
     package.mkdir(parents=True)
@@ -108,7 +109,7 @@ def other_build(compiler: Compiler, yade: Yade) -> tuple[str, str]:
 
 
 def main() -> int:
-    """Examine all mutations; return 0 if the guard handles all of them."""
+    """Examine all mutations; return 0 if the interface check handles all of them."""
     parser = argparse.ArgumentParser(description=__doc__)
     add_options(parser)
     parser.add_argument("--random", type=int, default=0, help="so many mutations at random beside the listed ones")

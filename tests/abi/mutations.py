@@ -122,7 +122,7 @@ NAMED: list[tuple[str, str, str | None, list[tuple[str, str]], str]] = [
 
 
 def named(headers: Path) -> list[Mutation]:
-    """Return the listed mutations; it is an error if the text of an edit no longer exists."""
+    """Return the listed mutations. It is an error if the search text of an edit is not in the headers."""
     texts = {name: (headers / HEADERS / f"{name}.hpp").read_text() for name in ("base", "core", "dispatch")}
     result = [Mutation(name, "listed", header, edited(texts[header], class_name, edits, name), check)
               for name, header, class_name, edits, check in NAMED]
@@ -184,7 +184,7 @@ class Random:
         self.made: set[str] = set()
 
     def mutation(self, number: int, listed: bool) -> Mutation:
-        """Return a new mutation, in a part that the list edits or in another part."""
+        """Return a new random mutation, in a part of the headers that the list edits or in another part."""
         kinds = {"member moved": self._moved, "member added": self._added, "member removed": self._removed,
                  "member retyped": self._typed, "entry exchanged": self._exchanged, "entry added": self._entry_added,
                  "entry removed": self._entry_removed, "size changed": self._size}

@@ -16,7 +16,7 @@ VARIANT = os.environ["STATEJUMP_YADE_VARIANT"]
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A project with this repository's detection of YADE, and a table without the installed YADE."""
+    """A CMake project that uses this repository's detection of YADE, with a table that lacks the installed YADE."""
     shutil.copytree(REPOSITORY / "contact_laws" / "yade_abi", tmp_path / "contact_laws" / "yade_abi")
     shutil.copytree(REPOSITORY / "scripts", tmp_path / "scripts")
     shutil.copytree(REPOSITORY / "cmake", tmp_path / "cmake")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/measure_yade on the installed YADE: it is recognised, and every kind of change is reported."""
+"""Runs scripts/measure_yade on the installed YADE: it recognises this YADE and reports every kind of change."""
 from __future__ import annotations
 
 import copy
@@ -105,7 +105,7 @@ def test_a_change_is_listed_and_nothing_else(
 
 
 def test_a_changed_binary_is_found(tmp_path: Path, reference: variants.Interface):
-    """The changed code allocates 8 more bytes for FrictPhys; the library is examined without being run."""
+    """The changed code allocates 8 more bytes for FrictPhys; the library is examined without being executed."""
     for library in FOLDER.glob("lib*.so"):
         (tmp_path / library.name).symlink_to(library)
     libraries = binary.Libraries(FOLDER)
@@ -124,7 +124,7 @@ def test_a_changed_binary_is_found(tmp_path: Path, reference: variants.Interface
 
 
 def test_a_member_that_the_binary_has_elsewhere_is_found(tmp_path: Path):
-    """Getter and setter of State.vel are shifted by 8 bytes in a YADE with known build identifiers."""
+    """In a YADE with known build identifiers, getter and setter of State.vel are shifted by 8 bytes."""
     folder = tmp_path / FOLDER.relative_to("/usr")
     folder.mkdir(parents=True)
     for file in FOLDER.iterdir():

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compiles the declarations of one variant with their static assertions, and compares the virtual function tables of
-derived classes with the measured ones; YADE is not needed. Also compiles the plugin sources that inherit from classes
-that differ between the variants."""
+"""Compiles the interface declarations of one YADE variant with their static assertions. Compares virtual function
+tables of derived classes with the measured tables; YADE is not needed. Also compiles the plugin sources whose base
+classes differ between variants."""
 from __future__ import annotations
 
 import argparse

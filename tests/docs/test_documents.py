@@ -20,7 +20,7 @@ TUTORIALS = sorted((REPOSITORY / "docs" / "tutorials").glob("*.md"))
 
 
 def tracked(*arguments: str) -> list[str]:
-    """Return the files known to git; skip the test outside of a clone."""
+    """Return the files tracked by git; skip the test outside of a git clone."""
     done = subprocess.run(["git", "ls-files", *arguments], cwd=REPOSITORY, capture_output=True, text=True)
     if done.returncode:
         pytest.skip("not a clone")

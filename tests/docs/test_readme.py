@@ -53,7 +53,8 @@ print("the block ran")
 
 
 def test_ten_lines_of_python(tmp_path: Path) -> None:
-    """The block reads two files, which commands of the README and a measurement would have written."""
+    """The code block in README.md reads two files, which commands of the README and a measurement would have written.
+    """
     def python(code: str) -> str:
         done = subprocess.run(["/usr/bin/python3", "-c", code], cwd=tmp_path, env={**ENVIRONMENT, "MPLBACKEND": "svg"},
                               capture_output=True, text=True, timeout=300)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random mutations of a file: bytes of any file, tokens and lines of a text, entries of a parsed document, objects of
-an HDF5 file. All randomness comes from the given generator, so a seed reproduces a mutation."""
+an HDF5 file. All randomness comes from the given generator, so the same seed gives the same mutation."""
 from __future__ import annotations
 
 import json
@@ -39,7 +39,7 @@ ODD_ARRAYS: tuple[Any, ...] = (
 
 
 def spoiled_bytes(content: bytes, others: list[bytes], chance: random.Random) -> bytes:
-    """Return a content with one to six changes of bytes, independent of its format."""
+    """Return the bytes of a file with one to six changes, independent of its format."""
     made = bytearray(content)
     for _ in range(chance.choice((1, 1, 1, 2, 3, 6))):
         at = chance.randrange(len(made) + 1)
@@ -208,7 +208,7 @@ def _declared(file: h5py.File, name: str, found: Any, chance: random.Random) -> 
 
 
 def _link(file: h5py.File, name: str, found: Any, chance: random.Random) -> None:
-    """Replace an object by a link: to itself, a parent, nothing, another file, a device, a pipe."""
+    """Replace an HDF5 object by a link: to itself, a parent, nothing, another file, a device, a pipe."""
     del file[name]
     target = chance.choice(("itself", "above", "nothing", "file", "device", "raw"))
     if target == "raw":

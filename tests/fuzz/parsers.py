@@ -4,13 +4,13 @@
 
     parsers.py --python build/python [--inputs N] [--only NAME ...] [--seed N] [--first N]
 
-Shipped files, and results made from them, are mutated at random and read: by the library for cases, campaigns,
-journals, temperatures and tables of items; by the command for result files, files of FCLIB, histories of `laws --drive`
-and decks. A refusal is a failure with exit status 2 and one printable line (or the documented status 1 of a command).
+Shipped files, and results made from them, are mutated at random and read. The library reads cases, campaigns, journals,
+temperatures and tables of nodes, links and joints; the command reads result files, FCLIB files, histories of `laws
+--drive` and decks. A refusal must have exit status 2 and one printable line (or the documented status 1 of a command).
 Faults are: any other exception, a warning of numpy, a signal, more than MEMORY_BYTES of additional memory, more than
 CPU_S seconds. An input depends only on seed, reader and number; `--only NAME --first N --inputs 1` repeats it.
 
-fuzz_mesh.cpp tests meshes. Bytes of HDF5 files of FCLIB, which have no checksum, are not mutated, because this would
+fuzz_mesh.cpp tests meshes. FCLIB files are HDF5 without a checksum; their bytes are not mutated, because this would
 test the HDF5 library.
 """
 from __future__ import annotations
@@ -54,9 +54,9 @@ class Fault(Exception):
 
 @dataclass(frozen=True)
 class Reader:
-    """A reader of files under test.
+    """A function under test that reads files.
 
-    :param spoiled: makes an input with the generator and writes it into the folder
+    :param spoiled: makes a mutated input with the generator and writes it into the folder
     :param read: reads the input in the folder; returns whether it was accepted, raises StatejumpError if it was refused
     """
 
@@ -66,7 +66,8 @@ class Reader:
 
 
 def command(*words: object) -> bool:
-    """Run a command in this process; return whether its status is not 2. :raises Fault: status or message is invalid"""
+    """Run a command in this process; return whether its exit status is not 2. :raises Fault: invalid status or message
+    """
     from statejump.cli import main
 
     said, errors = io.StringIO(), io.StringIO()
@@ -83,7 +84,8 @@ def command(*words: object) -> bool:
 
 
 def cases(folder: Path) -> Reader:
-    """Case files, as text and as dict. An accepted case must be reproduced by its own JSON; every tenth is run."""
+    """Reader of case files, as text and dict. The JSON of an accepted case must give the same case; every tenth is run.
+    """
     from statejump import load
     from statejump.core.errors import StatejumpError
     from statejump.kinds.limits import history_of
@@ -144,7 +146,7 @@ def campaigns(folder: Path) -> Reader:
 
 
 def journals(folder: Path) -> Reader:
-    """Journals of a campaign: mutated bytes, and mutated lines with a valid checksum."""
+    """Reader of campaign journals: mutated bytes, and mutated lines with a valid checksum."""
     from statejump.campaign.campaign_file import load_campaign
     from statejump.campaign.journal import NAME, Journal, _line
     from statejump.campaign.work import run_samples
@@ -181,7 +183,7 @@ def journals(folder: Path) -> Reader:
 
 
 def results(folder: Path) -> Reader:
-    """Result files and tables of campaigns: mutated bytes, and mutated objects with a valid checksum."""
+    """Reader of result files and campaign tables: mutated bytes, and mutated objects with a valid checksum."""
     from statejump import load
     from statejump.core.hdf5 import HEAD_BYTES, head
 
@@ -217,7 +219,7 @@ def results(folder: Path) -> Reader:
 
 @contextlib.contextmanager
 def changed_hdf5(image: bytes, chance: random.Random) -> Any:
-    """Yield an image of an HDF5 file with some of its objects changed."""
+    """Yield the bytes of an HDF5 file with some of its objects changed."""
     stream = io.BytesIO(image)
     with h5py.File(stream, "r+") as file:
         mutations.spoil_hdf5(file, chance)
@@ -304,7 +306,8 @@ def temperatures(folder: Path) -> Reader:
 
 
 def tables(folder: Path) -> Reader:
-    """Files of items of a case, as text and as HDF5. An accepted case must be reproduced by its own JSON."""
+    """Reader of tables of nodes, links and joints, as text and HDF5. The JSON of an accepted case must give the same
+    case."""
     from statejump.core.item_files import write_items
     from statejump.kinds.loading import load_case, parse_case
     from statejump.kinds.truss import generate
@@ -362,7 +365,7 @@ READERS = (cases, campaigns, journals, results, fclib_files, drives, temperature
 
 
 class Counts:
-    """Counters in memory shared by several processes: number of the input, accepted, refused, faults."""
+    """Counters in memory shared by several processes: input number, accepted inputs, refused inputs, faults."""
 
     def __init__(self) -> None:
         self._shared = np.frombuffer(mmap.mmap(-1, 64), dtype=np.int64)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutations depend only on their generator: no input depends on earlier ones."""
+"""Tests that mutations depend only on their generator, and not on earlier inputs."""
 from __future__ import annotations
 
 import random

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs clang-tidy on the engine and on the headers of the kernel, by the commands of the build without GCC's
-precompiled headers, which Clang does not read.
+"""Runs clang-tidy on the engine and on the headers of the kernel, with the compile commands of the build. GCC's
+precompiled headers are left out, because Clang cannot read them.
 
     clang_tidy.py CLANG_TIDY BUILD PATTERN...      PATTERN: a regular expression of the paths of sources
 
-Clang needs five seconds for the headers of a source, and the checks examine all of them. Therefore eight sources are
-checked together, as one source that includes them. Sources with equal local names are kept apart. If a batch does not
-compile, its sources are checked one by one.
+Clang needs five seconds for the headers that a source includes. Therefore eight sources are checked as one batch: a
+source that includes all eight. Sources with equal local names go to different batches. If a batch does not compile, its
+sources are checked one by one.
 """
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def private_names(text: str) -> set[str]:
 
 
 def options(command: str) -> list[str]:
-    """Return the arguments of a compile command without source, output and precompiled header."""
+    """Return the arguments of a compile command without its source, output and precompiled header."""
     kept, words = [], iter(shlex.split(PRECOMPILED.sub("", command)))
     for word in words:
         if word in ("-o", "-c", "-MF", "-MT"):

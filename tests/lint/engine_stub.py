@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compares the type stub of the engine's module with the module, outside of the package. Inside, mypy would first read
-the whole package, which takes five times as long without further findings. The stub has the names of both modules,
-because _engine re-exports those of _engine_more.
+"""Compares the type stub of the engine's module with the module, in a folder outside of the package: inside, mypy would
+read the whole package, which takes five times as long without further findings. The stub has the names of _engine and
+_engine_more, because _engine re-exports the latter.
 
     engine_stub.py FOLDER      folder of _engine.pyi and of the built modules
 """

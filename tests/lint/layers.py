@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks the layers of the Python package in the sources: which module may import which.
+"""Checks in the sources of the Python package which module imports which, by layers.
 
-A module imports from its own layer and from layers to its left; imports for type checkers count. No more than
-LARGEST_CIRCLE modules import each other in a circle. An import inside a function has a comment with its reason, on its
-line or on the line before it. Functions named by a string, ``"statejump.present.figures:drawn"``, exist. No attribute
-is accessed by a literal name; a Protocol declares it instead. A function has at most LONGEST_FUNCTION lines without its
-docstring.
+A module imports only from its own layer and from layers to its left in the list; imports for type checkers count. No
+more than LARGEST_CIRCLE modules import each other in a circle. An import inside a function has a comment with its
+reason, on its line or on the line before it. A function named by a string, such as
+``"statejump.present.figures:drawn"``, exists. No attribute is accessed by a literal name; a Protocol declares it
+instead. A function has at most LONGEST_FUNCTION lines without its docstring.
 
     python3 tests/lint/layers.py [--graph] [FOLDER]
 """
@@ -116,7 +116,7 @@ def _targets(node: ast.Import | ast.ImportFrom, files: Mapping[str, Path]) -> li
 
 
 def _walk(node: ast.AST, in_function: bool = False, for_types: bool = False) -> Iterator[tuple[ast.AST, bool, bool]]:
-    """Yield every node, whether it is inside a function, and whether it is only for type checkers."""
+    """Yield every syntax node, whether it is inside a function, and whether it is only for type checkers."""
     yield node, in_function, for_types
     inside = in_function or isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
     for child in ast.iter_child_nodes(node):
@@ -175,7 +175,8 @@ def _defined(tree: ast.Module) -> set[str]:
 
 
 def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
-    """Return the strongly connected components of at least two modules, the largest first (Tarjan 1972)."""
+    """Return the groups of modules that import each other (strongly connected components, Tarjan 1972), the largest
+    first."""
     index: dict[str, int] = {}
     low: dict[str, int] = {}
     stack: list[str] = []
@@ -204,7 +205,7 @@ def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
 
 
 def layer_of(module: str) -> int | None:
-    """Return the number of a module's layer, counted from the left; None: it belongs to none."""
+    """Return the number of a module's layer, counted from the left; None: the module belongs to no layer."""
     known = {name: number for number, (_, names) in enumerate(LAYERS) for name in names}
     while module and module not in known:
         module = module.rpartition(".")[0]

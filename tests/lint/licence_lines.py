@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks that every source file begins with its licence line. Exit status 1: some do not; they are listed."""
+"""Checks that every source file begins with its licence line. Exit status 1: some files do not; they are listed."""
 from __future__ import annotations
 
 import subprocess

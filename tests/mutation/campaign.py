@@ -1,16 +1,17 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutation testing: counts how many of a random sample of mutants of each module the tests detect.
+"""Mutation testing: counts for each module how many mutants of a random sample the tests detect.
 
-Many mutants of C++ share one build, and an environment variable selects one at run time (switched.py); the others are
-compiled separately. Headers are compiled with the tests that include them; a file of a library is linked before the
-library into the built test program. Mutants of Python are run by the test files that execute their statement, in a
-process forked after the slow imports. Mutants that do not compile do not count. The unmutated sources must pass.
+Many C++ mutants share one build, and an environment variable selects one of them at run time (switched.py); the others
+are compiled separately. A mutated header is compiled with the tests that include it; a mutated file of a library is
+linked into the built test program, before the library. A Python mutant is run with the test files that execute its
+statement, in a process forked after the slow imports. Mutants that do not compile do not count. The unmutated sources
+must pass.
 
 The seed determines the sample. A journal keeps results, so that a mutant is not run again while its file is unchanged.
 equivalent.toml lists survivors that no test can detect, with the reason.
 
-Exit status: 0 every module reaches its score, 1 one does not, 2 the set-up is wrong.
+Exit status: 0 every module reaches its score, 1 some module does not, 2 the set-up is wrong.
 """
 from __future__ import annotations
 
@@ -77,7 +78,7 @@ def guards_of(module: Module, root: Path, folder: Path, build: Path, journal: Jo
 
 
 def explained(mutant: Mutant, text: str) -> str | None:
-    """Return the reason why no test can detect a mutant; None: no reason is listed."""
+    """Return the listed reason why no test can detect a mutant; None: no reason is listed."""
     start = text.rfind("\n", 0, mutant.start) + 1
     line = text[start: text.find("\n", mutant.end)]
     for entry in tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")).get("mutant", []):
@@ -97,7 +98,7 @@ def campaign(module: Module, guards: Callable[[], Guards], root: Path, sample: i
     score = Score(module, len(whole))
 
     def known(mutant: Mutant) -> str | None:
-        """Return the known result of a mutant; None: it must be run."""
+        """Return the journal's result of a mutant; None: it must be run."""
         found = journal.known.get(journal.key(mutant, texts[mutant.file]))
         return None if found == SURVIVED and explained(mutant, texts[mutant.file]) is None else found
 
@@ -129,7 +130,7 @@ def campaign(module: Module, guards: Callable[[], Guards], root: Path, sample: i
 
 
 def chosen(names: list[str]) -> Iterator[Module]:
-    """Yield the modules with these names; all modules if there are none. :raises SetUp: a module does not exist"""
+    """Yield the modules with the given names; all modules without names. :raises SetUp: a module does not exist"""
     known = {module.name: module for module in MODULES}
     for name in names or known:
         if name not in known:

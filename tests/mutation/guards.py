@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs mutants: the sources are changed in a copy, and tests must fail."""
+"""Runs mutants: each is applied to a copy of the sources, and tests must fail."""
 from __future__ import annotations
 
 import json
@@ -45,21 +45,21 @@ def run(
 
 
 class Guards:
-    """Runs mutants of one module in a copy of the sources. ``compare`` returns the result of one."""
+    """Runs mutants of one module in a copy of the sources. ``compare`` returns the result of one mutant."""
 
     def __init__(self, module: Module, root: Path, folder: Path) -> None:
         self.module, self.root, self.folder = module, root, folder
         self.patience: dict[str, float] = {}
 
     def check(self, guard: str) -> None:
-        """Check that a guard (test) passes with the unmutated sources, and measure its time."""
+        """Check that a guard (a test) passes with the unmutated sources, and measure its time."""
         start = time.monotonic()
         if self.fails(guard, None) is not False:
             raise SetUp(f"{self.module.name}: {guard} fails with the unmutated sources")
         self.patience[guard] = max(LEAST_SECONDS, PATIENCE * (time.monotonic() - start))
 
     def order(self, mutant: Mutant) -> list[str]:
-        """Return the guards of a mutant; first the one named like its file."""
+        """Return the guards (tests) of a mutant; first the one named like its file."""
         stem = Path(mutant.file).stem
         return sorted(self.module.guards, key=lambda guard: Path(guard).stem.removesuffix("_test") != stem)
 
@@ -67,7 +67,7 @@ class Guards:
         """Prepare a build for these mutants, most of which will be run."""
 
     def tried(self, mutant: Mutant) -> tuple[str, str]:
-        """Return the result of a mutant, and the guard that detected it."""
+        """Return the result of a mutant, and the guard (test) that detected it."""
         return self.tried_alone(mutant)
 
     def tried_alone(self, mutant: Mutant) -> tuple[str, str]:
@@ -87,7 +87,7 @@ class Guards:
         return SURVIVED, ""
 
     def fails(self, guard: str, file: str | None) -> bool | None:
-        """Return whether a guard fails with the current sources; None: they do not compile."""
+        """Return whether a guard (test) fails with the current sources; None: the sources do not compile."""
         raise NotImplementedError
 
 
@@ -105,8 +105,8 @@ class Compiled(Guards):
             shutil.copytree(root / name, folder / name, dirs_exist_ok=True)
 
     def _quiet(self, command: list[str]) -> list[str]:
-        """Return a compile command for the copy of the sources, without launcher, output, warnings and precompiled
-        header."""
+        """Return a compile command for the copy of the sources, without compiler launcher, output file, warnings and
+        precompiled header."""
         place = next(place for place, word in enumerate(command) if not word.endswith("ccache"))
         kept, words = [], iter(command[place:])
         for word in words:
@@ -117,13 +117,13 @@ class Compiled(Guards):
         return [*kept, "-w", *ASSERTING]
 
     def compile(self, file: str, result: Path, *options: str) -> str | None:
-        """Compile a file of the copy; return the compiler's messages if it fails."""
+        """Compile a file of the copied sources; return the compiler's messages if it fails."""
         command = [*self.commands[str(self.root / file)], *options, "-c", str(self.folder / file), "-o", str(result)]
         done = subprocess.run(command, cwd=self.build, capture_output=True, text=True)
         return None if done.returncode == 0 else done.stderr
 
     def passes(self, program: Path, guard: str, chosen: int = 0) -> bool:
-        """Run a test program, or the tests that the guard names, with a mutant selected (0: none)."""
+        """Run a test program, or only the tests that the guard names, with a mutant selected (0: none)."""
         wanted = [f"--gtest_filter={tests}" for _, found, tests in [guard.partition(":")] if found]
         return run([str(program), "--gtest_brief=1", "--gtest_fail_fast", *wanted], self.patience.get(guard, 600),
                    chosen=chosen) == 0
@@ -146,7 +146,7 @@ class Compiled(Guards):
             self.patience[guard] = max(LEAST_SECONDS, PATIENCE * (time.monotonic() - start))
 
     def _built(self, files: list[str], originals: dict[str, str]) -> bool:
-        """Build with the remaining mutants; False: some were removed, to be compiled separately."""
+        """Build with the remaining mutants; return False if some were removed, to be compiled separately."""
         lines: dict[str, dict[int, tuple[int, int]]] = {}
         for file in files:
             text, lines[file] = switched(
@@ -186,7 +186,7 @@ class Compiled(Guards):
 
 
 class HeaderGuards(Compiled):
-    """Compiles each test file with the mutated header, without optimisation, with a precompiled prefix."""
+    """Compiles each test file with the mutated header, without optimisation but with a precompiled prefix."""
 
     def __init__(self, module: Module, root: Path, folder: Path, build: Path) -> None:
         super().__init__(module, root, folder, build)
@@ -242,7 +242,7 @@ class HeaderGuards(Compiled):
 
 
 class LibraryGuards(Compiled):
-    """Compiles the mutated file and links it before its library into the test program of the build."""
+    """Compiles the mutated file of a library, and links it into the test program of the build, before its library."""
 
     def __init__(self, module: Module, root: Path, folder: Path, build: Path) -> None:
         super().__init__(module, root, folder, build)
@@ -276,7 +276,7 @@ class LibraryGuards(Compiled):
         return self.folder / (source.replace("/", "_") + ".o")
 
     def _link(self, guard: str, made: list[Path], program: Path) -> None:
-        """Link a test program of the build with replaced objects of its library."""
+        """Link a test program of the build with replaced object files of its library."""
         told = subprocess.run(["ninja", "-t", "commands", guard.partition(":")[0]], cwd=self.build,
                               capture_output=True, text=True)
         link = shlex.split(told.stdout.strip().splitlines()[-1].split("&&")[1])
@@ -296,8 +296,8 @@ class LibraryGuards(Compiled):
         return not self.passes(self.folder / "mutant", guard)
 
     def _sources(self, file: str | None) -> list[str]:
-        """Return the files to compile for a mutant: the file itself or, for a header, the files beside it that include
-        it."""
+        """Return the files to compile for a mutant: the mutated file itself or, for a header, the files beside it that
+        include it."""
         if file is None or file.endswith(".cpp"):
             return [file] if file else []
         name, beside = Path(file).name, sorted((self.folder / file).parent.glob("*.cpp"))

@@ -15,11 +15,11 @@ class Module:
     """Files that are mutated one at a time, and their tests, the cheapest first.
 
     :param sources: patterns of the files, relative to the repository
-    :param guards: test files of headers (each is compiled with the mutant) and of Python (the campaign chooses among
-        those that execute a mutant); names of the built test programs of a library, into which the mutant is linked,
-        behind a colon those of its tests that are run
+    :param guards: tests. For headers: test files, each compiled with the mutant. For Python: test files; those that
+        execute a mutant are run. For a library: built test programs, into which the mutant is linked; names of single
+        tests may follow a colon
     :param wanted: smallest required fraction of detected mutants
-    :param own: test files of Python that run every mutant that they execute
+    :param own: Python test files that run every mutant whose statement they execute
     """
 
     name: str
@@ -34,7 +34,7 @@ class Module:
 
 
 def _tests(folder: str) -> tuple[str, ...]:
-    """Return the test files of a folder of tests/cpp, the shortest first, because they take the least time."""
+    """Return the test files in a folder of tests/cpp, the shortest file first, because it takes the least time."""
     files = sorted((ROOT / "tests" / "cpp" / folder).glob("*_test.cpp"), key=lambda file: file.stat().st_size)
     return tuple(str(file.relative_to(ROOT)) for file in files)
 

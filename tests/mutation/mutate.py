@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mutation test of the contact kernel: its tests must detect every listed mutation.
 
-Copies the kernel headers to a temporary folder, applies one textual mutation at a time, compiles the named file of
-tests/cpp/kernel against the copy and runs it. The unmutated copy must pass, every mutant must fail at least one test.
-It is an error if a mutant does not compile, or if the search text of a mutation does not occur exactly once.
+The program copies the kernel headers to a temporary folder, applies one textual mutation at a time, and compiles and
+runs the test file of tests/cpp/kernel that the mutation names. The unmutated copy must pass, every mutant must fail at
+least one test. It is an error if a mutant does not compile, or if the search text of a mutation does not occur exactly
+once.
 
-Exit status: 0 all mutants killed, 1 one survived or the unmutated copy fails, 2 the set-up is wrong.
+Exit status: 0 all mutants detected, 1 a mutant survived or the unmutated copy fails, 2 the set-up is wrong.
 """
 
 import argparse

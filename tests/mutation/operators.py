@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mutants of a source: one operator, constant, sign, condition or statement changed.
+"""Makes mutants of a source: each changes one operator, constant, sign, condition or statement.
 
-C++ is searched as text with comments, strings and preprocessor lines blanked. clang-format puts blanks around binary
-operators only, which distinguishes ``a * b`` from ``A* b``. Numbers right after ``<`` may be template arguments and are
-not changed. Python is searched by its syntax tree. Messages, documentation and annotations are not changed.
+C++ is searched as text in which comments, strings and preprocessor lines are blanked. clang-format puts blanks only
+around binary operators, which distinguishes product ``a * b`` and pointer ``A* b``. Numbers right after ``<`` may be
+template arguments and are not changed. Python is searched by its syntax tree. Messages, documentation and annotations
+are not changed.
 """
 from __future__ import annotations
 
@@ -67,7 +68,7 @@ _TYPED = re.compile(r"^(?:return|throw|using|namespace|break|continue|case|defau
 
 
 def blanked(text: str, strings: bool = True) -> str:
-    """Return C++ with comments replaced by blanks and, if ``strings`` is true, also strings and preprocessor lines."""
+    """Return C++ with comments replaced by blanks; if ``strings`` is true, strings and preprocessor lines too."""
 
     def blank(found: re.Match[str]) -> str:
         if strings or found.group().startswith(("//", "/*")):
@@ -78,7 +79,7 @@ def blanked(text: str, strings: bool = True) -> str:
 
 
 def _other_number(number: str) -> str | None:
-    """Return another number of the same type; None for a number that is not a plain decimal."""
+    """Return another number of the same type, as a mutant; None for a number that is not a plain decimal."""
     if number.startswith("0x") or number[-1] in "uUlLfz":
         return None
     if re.fullmatch(r"\d+", number):
@@ -154,7 +155,7 @@ class _Source:
         return self._offset(node.lineno, node.col_offset), self._offset(node.end_lineno, node.end_col_offset)
 
     def between(self, left: ast.expr, right: ast.expr, word: str) -> tuple[int, int] | None:
-        """Return the position of an operator between two operands; None if a comment is there too."""
+        """Return the position of an operator between two operands; None if a comment also lies between them."""
         first, last = self.span(left)[1], self.span(right)[0]
         place = self.text.find(word, first, last)
         return None if place < 0 or "#" in self.text[first:last] else (place, place + len(word))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs mutants of Python with the test files that execute their statement."""
+"""Runs Python mutants with the test files that execute the mutated statement."""
 from __future__ import annotations
 
 import ast
@@ -29,7 +29,7 @@ HEAVY = ("numpy", "attrs", "h5py", "scipy.optimize", "scipy.stats", "hypothesis"
 
 
 def statement_lines(text: str, place: int) -> range:
-    """Return the lines of the Python statement at a position; for a compound statement only its head."""
+    """Return the lines of the Python statement at a position; for a compound statement only the lines of its head."""
     line, found = text.count("\n", 0, place) + 1, range(0)
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.stmt) and node.end_lineno is not None and node.lineno <= line <= node.end_lineno:
@@ -41,9 +41,9 @@ def statement_lines(text: str, place: int) -> range:
 
 
 class PythonGuards(Guards):
-    """The test files run in a fork of this process, on a copy of the built package.
+    """Runs Python test files as guards, in a fork of this process, on a copy of the built package.
 
-    Each runs once under a trace of executed lines, which the journal keeps while package and test are unchanged.
+    Each file runs once with a trace of executed lines, which the journal keeps while package and test are unchanged.
     Commands in separate processes are not traced.
     """
 
@@ -90,9 +90,9 @@ class PythonGuards(Guards):
             self.patience[guard] = max(LEAST_SECONDS, PATIENCE * self.seconds[guard])
 
     def order(self, mutant: Mutant) -> list[str]:
-        """Return the guards to run, the quickest first: of those that execute a mutant, the module's own, and the few
-        that execute most of its file per second. A line that no trace has seen may be executed by any guard of the
-        file."""
+        """Return the guards (test files) to run for a mutant, the quickest first: of the files that execute the mutant,
+        the module's own and the few that execute most lines per second. If no trace has the mutated line, any guard of
+        the file may execute it."""
         if not self.executed:
             self.prepare([mutant])
         lines = set(statement_lines((self.folder / mutant.file).read_text(encoding="utf-8"), mutant.start))
@@ -135,7 +135,7 @@ class PythonGuards(Guards):
             return line_of(frame, event, value) if frame.f_code.co_filename in executed else None
 
         class Again:
-            """Endless recursion ends a trace, so each test starts a new one."""
+            """A recursion error ends a trace of executed lines, so each test starts a new one."""
 
             @staticmethod
             def pytest_runtest_setup() -> None:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Many mutants of C++ in one build: the statement of each mutant is compiled beside the original and selected at run
-time.
+"""Puts many C++ mutants into one build: the mutated statement is compiled beside the original and selected at run time.
 
 One compilation serves all mutants, so that a mutant costs only a run of its tests. A mutant whose statement cannot be
 duplicated (a declaration with deduced type, a constant expression) is compiled separately.
@@ -36,7 +35,7 @@ _DECLARES = re.compile(r"(?:const\s|constexpr\s|static\s|auto\b|using\b|template
 
 @dataclass(frozen=True)
 class _Place:
-    """Part of a text to duplicate: ``text[start:end]``, in the manner of its kind."""
+    """Part ``text[start:end]`` of a source to duplicate; ``kind`` determines the form of the copy."""
 
     start: int
     end: int
@@ -44,7 +43,7 @@ class _Place:
 
 
 def switched(text: str, numbered: dict[int, Mutant]) -> tuple[str, dict[int, tuple[int, int]]]:
-    """Return a text with these mutants, and the first and last line of the statement of each included mutant. Line
+    """Return a source that includes mutants, and the first and last line of each included mutant's statement. Line
     numbers do not change."""
     code, bare = blanked(text), blanked(text, strings=False)
     taken: list[tuple[_Place, int, Mutant]] = []
@@ -78,7 +77,7 @@ def _doubled(kind: str, changed: str, was: str, number: int) -> str:
 
 
 def _place(code: str, mutant: Mutant) -> _Place | None:
-    """Return the part of the text to duplicate for a mutant; None: the mutant must be compiled separately."""
+    """Return the part of the source to duplicate for a mutant; None: the mutant must be compiled separately."""
     if mutant.operator == "removed statement":
         return _Place(mutant.start, mutant.end, "removed")
     start = _start(code, mutant.start)
@@ -178,7 +177,7 @@ def _start(code: str, place: int) -> int | None:
 
 
 def _in_for(code: str, place: int) -> bool:
-    """Return whether a semicolon belongs to the head of a for loop."""
+    """Return whether a semicolon belongs to the head of a for statement."""
     line = code.rfind("for (", 0, place)
     return line >= 0 and _closing_or_end(code, line + 5) > place
 
@@ -191,7 +190,7 @@ def _closing_or_end(code: str, place: int) -> int:
 
 
 def _end(code: str, place: int) -> int:
-    """Return the end of the statement: its semicolon, or the enclosing closing bracket."""
+    """Return the end position of a statement: its semicolon, or the closing bracket that encloses it."""
     depth = 0
     while place < len(code):
         letter = code[place]

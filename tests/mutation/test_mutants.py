@@ -64,7 +64,7 @@ def test_changes_of_python() -> None:
 
 
 def test_lines_of_a_statement_of_python() -> None:
-    """Only the head of a compound statement; otherwise tests of its body would be run in vain."""
+    """The lines of a compound statement are only its head. Otherwise tests of its body would be run in vain."""
     text = "x = (1 +\n     2)\ndef f(a=3,\n      b=4):\n    if a < 5: return 6\n    return 7\n"
 
     def lines(what: str) -> list[int]:
@@ -75,7 +75,8 @@ def test_lines_of_a_statement_of_python() -> None:
 
 
 def test_build_with_all_mutants_is_each_of_them(tmp_path: Path) -> None:
-    """f(1, &3) of the original and of every mutant in one build, compared with the separately compiled mutants."""
+    """One build holds the original of f(1, &3) and all mutants. Each is compared with the separately compiled mutant.
+    """
     numbered = dict(enumerate(mutants("f.cpp", BRANCHED), start=1))
     main = ('#include <cstdio>\nint main() {\n  const double b = 3;\n'
             '  for (double a : {1.0, 2.0, 5.0}) std::printf("%g ", f(a, &b));\n}\n')
@@ -123,7 +124,7 @@ def test_explained_mutants_are_still_there() -> None:
 
 
 class Oracle:
-    """Detects changes of a number; a mutant that removes a statement does not compile."""
+    """Detects mutants that change a number; a mutant that removes a statement does not compile."""
 
     def prepare(self, wanted: list[Mutant]) -> None:
         """Nothing to make ready."""

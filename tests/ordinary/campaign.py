@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaign of ordinary structures: fraction of the structures with a path that the solver solves, by class.
+"""Solves many ordinary structures; prints by class which fraction of those that have a quasi-static path is solved.
 
     PYTHONPATH=build/python tests/ordinary/campaign.py [--count 300] [--seed 1] [--families warren boom ...] [--jobs 1]
         [--out outcomes.csv] [--limit 60] [--nice 15] [--write FOLDER] [--at-least 0.98 0.95]
 
-Family and seed determine a structure. Theory (``oracle.py``) decides whether it has a path, and a worker process, which
-may crash or exceed the limit, solves it with default options. The first table counts outcomes by family, the second
-those of structures with a path. ``--write`` writes the case files of failures.
+Family and seed determine a structure. Theory (``oracle.py``) decides whether it has a path. A worker process, which may
+crash or exceed the time limit, solves it with default options. The first table counts all outcomes by family, the
+second the outcomes of structures with a path. ``--write`` writes the case files of failures.
 """
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def table(rows: list[Row]) -> str:
 
 
 def groups(rows: list[Row]) -> dict[str, list[Row]]:
-    """Return the rows of structures with a path, by the requirement on their class."""
+    """Return the table rows of structures with a quasi-static path, grouped by the requirement on their class."""
     path = [row for row in rows if has_path(row)]
     return {
         "path, no clearance joint": [row for row in path if not row["clearance"]],
@@ -173,7 +173,8 @@ def fraction(rows: list[Row]) -> float:
 
 
 def summary(rows: list[Row]) -> str:
-    """Return the counts of structures with a path that finished, and of results that are always wrong."""
+    """Return a table: fraction of structures with a quasi-static path that was finished, and count of wrong outcomes.
+    """
     lines = ["| structures | number | finished | fraction |", "|---|---|---|---|"]
     for name, chosen in groups(rows).items():
         finished = sum(row["outcome"] == "finished" for row in chosen)
@@ -194,7 +195,7 @@ def summary(rows: list[Row]) -> str:
 
 
 def write_cases(rows: list[Row], folder: Path) -> None:
-    """Write the case files of structures with a path that did not finish, and of results that are always wrong."""
+    """Write the case files of structures with a quasi-static path that were not finished, and of wrong outcomes."""
     from statejump.kinds.truss.generate.document import to_toml
 
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials, sections, loads and joints for a sketched shape, in the ranges of engineering practice."""
+"""Assigns materials, sections, loads and joints to a sketched shape, in ranges of engineering practice."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -107,9 +107,9 @@ def _preload(made: Sketch, rng: Random) -> None:
 
 @dataclass
 class Joiner:
-    """Places joints.
+    """Places joints in a structure.
 
-    :param force_N: force of a heated bar of fixed length [N]
+    :param force_N: thermal force of a typical bar of fixed length [N]
     """
 
     made: Sketch
@@ -124,7 +124,8 @@ class Joiner:
         return f"{kind}{self.number}"
 
     def friction(self) -> dict[str, float]:
-        """Return coefficient and normal force of friction, from little to more than the joint can ever carry."""
+        """Return a friction coefficient and normal force; the limit ranges from little to more than the joint can
+        carry."""
         share = float(10 ** self.rng.uniform(-2, 0.3))
         coefficient = float(np.round(self.rng.uniform(0.05, 0.5), 3))
         return {"friction_coefficient": coefficient,
@@ -163,15 +164,15 @@ class Joiner:
         self.made.add(kind, self.name("fit"), nodes=[new, old], axis=axis, **self.along(kind))
 
     def _may_detach(self, bar: str, side: int) -> bool:
-        """Return whether another bar remains at the end. Nodes of joints keep their bars, and one of two bars with an
-        angle item between them keeps their node."""
+        """Return whether a bar's end may move to a new node. Another bar must remain at the old node, which may not
+        belong to a joint. Bars coupled by a spring or latch keep a common node."""
         node = self.made.bars[bar].ends[side]
         stays = len(self.made.at(node)) > 1 or node in self.made.fixed
         return (stays and "_of_" not in node and (bar, node) not in self.carriers
                 and all(node in self.made.bars[other].ends for other in self._turned_by(bar, node)))
 
     def _turned_by(self, bar: str, node: str) -> list[str]:
-        """Return the bars against which springs and latches rotate a bar about a node, wherever their ends are now."""
+        """Return the bars that springs or latches couple to a given bar, at a node of the original shape."""
         pairs = [item["links"] for section in ("torsion_spring", "latch_hinge")
                  for item in self.made.items.get(section, ()) if bar in item["links"]]
         others = [other for pair in pairs for other in pair if other != bar]

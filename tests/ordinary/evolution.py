@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Displacements at the ends of cycles, computed without the engine, for structures of class A whose only joints are
-sliders without stops. Small displacements; each step minimises energy plus frictional heat."""
+"""Displacements at the ends of cycles, computed without the engine, for structures of class A (see oracle.py) whose
+only joints are sliders without stops. Displacements are small; each step minimises energy plus frictional heat."""
 from __future__ import annotations
 
 from typing import Any
@@ -18,7 +18,7 @@ TOLERANCE = 0.05
 
 
 def applies(document: Document) -> bool:
-    """Return whether a structure is of this kind; structures with cables, which may become slack, are not."""
+    """Return whether this theory applies to a structure; it excludes structures with cables, which may become slack."""
     others = any(document.get(section) for section in (*CLEARANCE, "iwan_joint", "latch_hinge"))
     cables = any(spring.get("cable") for spring in document.get("spring", ()))
     sliders = document.get("slider", [])
@@ -55,7 +55,7 @@ def scaled(document: Document, share: float) -> Document:
 
 
 def changes_K(program: Document, times: np.ndarray, period_s: float) -> np.ndarray:
-    """Return the temperature changes of a program at times within a cycle."""
+    """Return the temperature changes of a temperature program at given times within a cycle."""
     if program["shape"] == "table":
         return np.interp(times, program["table_time_s"], program["table_temperature_change_K"])
     share, largest = times / period_s, program["temperature_change_max_K"]

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random trusses without loads and joints: each must expand freely, without forces, and return.
+"""Solves random trusses without loads and joints: each must expand freely, without forces, and return.
 
     PYTHONPATH=build/python tests/ordinary/free_expansion.py [--count 1000] [--seed 1] [--limit 60] [--write FOLDER]
 
-Six supports in space, or three in a plane, hold a truss without hindering uniform expansion. A redundant truss has one
-coefficient and one temperature. Bars of a determinate truss have individual coefficients, temperatures and programs;
-each must have the length of a free bar.
+Six supports in space, or three in a plane, hold a truss without hindering uniform expansion. A redundant truss has
+uniform expansion coefficient and temperature. Bars of a determinate truss have individual coefficients, temperatures
+and programs; each bar must have its free length.
 """
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ class Truss:
 
 
 def grown(rng: Random, dimension: int, members: int) -> tuple[np.ndarray, list[tuple[int, int]]]:
-    """Return a determinate truss: each new node has as many bars as dimensions, none nearly in the plane of the others.
-    Some trusses are long, some compact."""
+    """Return a determinate truss. Each new node has as many bars as dimensions, none nearly in the plane of the other
+    bars. Some trusses are long, some compact."""
     recent = int(rng.choice([dimension + 1, 8, 10_000]))
     places = [np.zeros(dimension)]
     bars: list[tuple[int, int]] = []
@@ -109,8 +109,8 @@ def standing(rng: Random, shape: str, members: int) -> tuple[np.ndarray, list[tu
 
 
 def mounted(places: np.ndarray, bars: list[tuple[int, int]]) -> Sketch:
-    """Return a sketch held at one node in all directions, at the farthest node across the line to it, and in space at
-    the node farthest from that line across their plane."""
+    """Return a structure with statically determinate supports: one node is fixed, the farthest from it is held across
+    their line, and in space a third across the plane of the three."""
     dimension = places.shape[1]
     first = places - places[0]
     second = int(np.linalg.norm(first, axis=1).argmax())
@@ -155,7 +155,7 @@ def heated(made: Sketch, rng: Random, uniform: bool) -> tuple[Document, list[Doc
 
 
 def truss(seed: int) -> Truss | None:
-    """Return the truss of a seed; None if its shape is (nearly) a mechanism or changes too much."""
+    """Return the truss of a seed; None if its shape is (nearly) a mechanism or heating changes it too much."""
     rng = structures.random_of("free_expansion", seed)
     shape = str(rng.choice(["grown", "meshed", *STANDING], p=[0.35, 0.35, *[0.3 / len(STANDING)] * len(STANDING)]))
     members = int(round(10 ** rng.uniform(0, np.log10(MOST))))
@@ -181,7 +181,7 @@ def truss(seed: int) -> Truss | None:
 
 
 def _rotation(frame: Frame, basis: np.ndarray, rows: np.ndarray) -> float:
-    """Return the largest rotation of a bar of a determinate truss at the extremes of the programs [rad]."""
+    """Return the largest bar rotation [rad] in a determinate truss, at the extremes of its temperature programs."""
     stretched = -np.array(frame.thermal_tensions()) / frame.stiffness
     moved = (basis @ np.linalg.lstsq(rows, stretched.T, rcond=None)[0]).T.reshape(len(stretched), *frame.x.shape)
     ends = np.array([ends for ends, _ in frame.directions])
@@ -200,7 +200,7 @@ def trusses(count: int, seed: int) -> Iterator[Truss]:
 
 
 def _allowed(one: Truss, path: Any) -> tuple[float, float]:
-    """Return the rounding errors of forces [N] and lengths [m].
+    """Return the allowed rounding errors of bar forces [N] and bar lengths [m].
 
     Rounding of coordinates changes lengths and thereby bar forces. The inverse of the equilibrium matrix converts nodal
     residuals to bar forces, which strain bars of other stiffness.
@@ -225,8 +225,8 @@ def _strains(one: Truss, path: Any) -> np.ndarray:
 
 
 def _over_rounding(one: Truss, path: Any) -> dict[str, float]:
-    """Return forces, lengths, jump and the displacement of a uniform expansion over their rounding errors. Forces are
-    relative to that of a bar of fixed length, and the jump to the expansion of the truss."""
+    """Return, over their rounding errors: forces, lengths, jump, and displacement under uniform expansion. Forces are
+    relative to that of a bar of fixed length, the jump to the expansion of the truss."""
     states, links, places = path.states, path.truss.links, path.truss.nodes.position_m
     force_N, length_m = _allowed(one, path)
     # From lengths to displacements, the equilibrium matrix enters once more.
@@ -248,7 +248,7 @@ def _over_rounding(one: Truss, path: Any) -> dict[str, float]:
 
 
 def checked(one: Truss) -> dict[str, Any]:
-    """Return the results of a truss and its faults, "" for none."""
+    """Return the results of a truss, and its faults as text ("" for none)."""
     began = time.process_time()
     try:
         path = sj.load(one.document).reduced().native
@@ -264,7 +264,7 @@ def checked(one: Truss) -> dict[str, Any]:
 
 
 def main() -> int:
-    """Print the table and the faults; return 1 if there are any."""
+    """Print the table and the faults; return 1 if there are any faults."""
     given = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     given.add_argument("--count", type=int, default=1000)
     given.add_argument("--seed", type=int, default=1)

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Invariance of the jump under another order, names, position, orientation, units and duration of a case.
+"""Checks that the jump does not depend on order, names, position, orientation, units and duration in a case.
 
     PYTHONPATH=build/python tests/ordinary/invariance.py [--count 300] [--seed 1] [--families ...] [--most-nodes 60]
         [--out FILE.csv]
 
-Uses structures of class A whose joints all carry forces, because their paths are unique. A row has the difference of
-the jumps of all nodes and cycles, over the rounding error.
+The structures are of class A (``oracle.py``) and their joints all carry forces, so their paths are unique. A row has
+the largest difference of jumps, over the rounding error.
 """
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ ROUNDINGS = 64  # number of roundings of a length: coordinates, direction, a few
 
 @dataclass(frozen=True)
 class Solved:
-    """Jumps of a case.
+    """Jumps of a solved case.
 
-    :param jump_m: jumps by node (cycles, dimension)
-    :param largest_m: largest displacement of the path
+    :param jump_m: jumps [m] by node (cycles, dimension)
+    :param largest_m: largest displacement on the path [m]
     :param failure: kind of the failure, "" for none
     """
 
@@ -51,7 +51,7 @@ class Solved:
 
 
 def solved(document: Document) -> Solved:
-    """Return the jumps of a case with the options in its document."""
+    """Return the jumps of a case, solved with the options in its document."""
     try:
         path = sj.load(document).reduced().native
     except FailedRun as failed:
@@ -67,9 +67,9 @@ def solved(document: Document) -> Solved:
 def tolerance_m(document: Document, first: Solved, changed: Changed) -> float:
     """Return the allowed difference of jumps [m].
 
-    Events are located within a fraction of a branch, so a joint may slip by that fraction of the largest displacement
-    more or less. Rounding of lengths is amplified by at most the root of the condition number of the stiffness. If laws
-    are smooth, twice the increments change the path to second order.
+    Events are located to a fraction of a branch, so the slip of a joint is uncertain by this fraction of the largest
+    displacement. Rounding of lengths is amplified by at most the root of the stiffness' condition number. With smooth
+    laws, twice the increments change the path to second order.
     """
     frame = Frame(document)
     stiffness = frame.elastic(np.ones(len(frame.stiffness), dtype=bool)) + frame.geometric(frame.tension)
@@ -80,7 +80,8 @@ def tolerance_m(document: Document, first: Solved, changed: Changed) -> float:
 
 
 def apart(document: Document, first: Solved, name: str, rng: np.random.Generator) -> dict[str, Any]:
-    """Return a row: difference of the jumps of the changed case from the first [m], and the allowed difference."""
+    """Return a table row: difference of the jumps of the changed case from the original ones [m], and allowed
+    difference."""
     changed = TRANSFORMS[name](document, rng)
     second = solved(changed.document)
     row: dict[str, Any] = {"transform": name, "failure": first.failure, "changed_failure": second.failure}

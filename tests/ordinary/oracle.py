@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decides without the engine whether a structure has a quasi-static path: small displacements, numpy and scipy only.
+"""Decides without the engine, for small displacements, whether a structure has a quasi-static path.
 
 Three checks decide; each is based on a theorem.
 
 - *Stability*: with every joint held, the elastic plus the geometric stiffness is positive definite. Otherwise the
   structure is a mechanism, or it buckles.
-- *Class A*: it is positive definite with every slider and Iwan joint free as well. With given friction limits each step
-  is then a strictly convex minimisation: exactly one continuation exists, whatever slips.
-- *Safe loads*: bar forces and friction within its limits balance more than the loads. A quasi-static evolution with
-  given friction limits then exists, as in perfect plasticity (the safe-load condition); if they balance less, none.
+- *Class A*: this stiffness is positive definite also if every slider and Iwan joint is free. With given friction limits
+  each step is then a strictly convex minimisation: exactly one continuation exists, whatever slips.
+- *Safe loads*: bar forces and friction within its limits can balance more than the loads. A quasi-static evolution with
+  given friction limits then exists, as in perfect plasticity (safe-load condition). If they balance less, none exists.
 
-In the stiffness, pins are closed. A bar with play has the energy of a bar with a dead zone and is stable if the bar is.
+The stiffness assumes closed pins. A bar with play has an energy with a dead zone; it is stable if the bar without play
+is stable.
 """
 from __future__ import annotations
 
@@ -37,13 +38,13 @@ FAR = 0.05  # of the size
 
 @dataclass(frozen=True)
 class Verdict:
-    """Verdict of theory on a structure.
+    """What theory predicts for a structure.
 
     :param kind: ``path``, ``overloaded``, ``mechanism``, ``unstable`` or ``undetermined``
     :param class_a: whether the continuation is always unique
     :param load_factor: largest multiple of the loads that friction carries; inf: any
-    :param start_share: estimated initial displacement over the size; NaN: not estimated
-    :param slack: whether some part with play carries no force at the start
+    :param start_share: estimated initial displacement over the structure's size; NaN: not estimated
+    :param slack: whether some bar with play carries no force at the start
     """
 
     kind: str
@@ -54,7 +55,7 @@ class Verdict:
 
 
 class Frame:
-    """The arrays of a document; vectors have the dimension of the truss."""
+    """The arrays of a case document; vectors have the dimension of the truss."""
 
     def __init__(self, document: Document) -> None:
         self.document, self.dimension = document, document["truss"]["dimension"]
@@ -114,7 +115,7 @@ class Frame:
         self.directions, self.lengths, self.cables = directions, np.array(lengths), np.array(cables)
 
     def _turn(self, item: dict[str, Any]) -> np.ndarray:
-        """Return the row of the angle from the first link to the second."""
+        """Return the equilibrium matrix' row of the angle from the first link to the second."""
         row, names = np.zeros_like(self.x), item["links"]
         for name, sign in zip(names, (-1.0, 1.0) if len(names) > 1 else (1.0,)):
             ends = [self.place[node] for node in self.links[name]["nodes"]]
@@ -130,7 +131,8 @@ class Frame:
         return row.ravel()
 
     def thermal_tensions(self) -> list[np.ndarray]:
-        """Return the tensions of bars of fixed length due to temperature, at the extremes of the programs."""
+        """Return the thermal forces of bars of fixed length, tension positive, at both extremes of the temperature
+        programs."""
         programs = {None: self.document["thermal"], **{one["name"]: one for one in self.document.get("program", ())}}
         found = []
         for largest in (True, False):
@@ -144,7 +146,7 @@ class Frame:
         return found
 
     def motions(self, sliding: bool) -> np.ndarray:
-        """Return a basis of the displacements that supports and joints permit; pins held, sliders free or held."""
+        """Return a basis of the displacements that supports and joints permit; pins are held, sliders free or held."""
         n, d = len(self.x), self.dimension
         constraints = []
         for number, node in enumerate(self.document["node"]):
@@ -216,7 +218,7 @@ def _extremes(program: Document) -> tuple[float, ...]:
 
 
 def _null_space(rows: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of the null space; rows with a single direction need no decomposition."""
+    """Return an orthonormal basis of the null space; rows with a single entry need no decomposition."""
     size = rows.shape[1]
     single = (rows != 0).sum(axis=1) <= 1
     kept = np.setdiff1d(np.arange(size), np.abs(rows[single]).argmax(axis=1) if single.any() else [])
@@ -268,10 +270,10 @@ def _forces(frame: Frame, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _balanced(frame: Frame, basis: np.ndarray, moved: np.ndarray, load: np.ndarray) -> np.ndarray | None:
-    """Return the displacement in equilibrium with a load. None: Newton steps do not halve the residual, or pass an
-    unstable shape, because the load step is too large.
+    """Return the displacement in equilibrium with a load. None: the load step is too large, because Newton steps do not
+    halve the residual or pass an unstable shape.
 
-    :param load: in unknowns, minus the imbalance of preloads
+    :param load: load by unknown, minus the imbalance of preloads
     """
     turns = np.array(frame.turns).reshape(-1, frame.x.size)
     bending = turns.T @ (frame.turn_stiffness[:, None] * turns)  # as drawn
@@ -290,8 +292,8 @@ def _balanced(frame: Frame, basis: np.ndarray, moved: np.ndarray, load: np.ndarr
 
 
 def follow(frame: Frame, basis: np.ndarray) -> np.ndarray | None:
-    """Return the displacement of the loaded structure with held joints, from the reference configuration along loads
-    that increase in adaptive steps; None if it becomes unstable. The imbalance of preloads increases with the loads."""
+    """Return the displacement of the loaded structure with held joints, followed from the reference configuration while
+    loads and the imbalance of preloads increase in adaptive steps. None: the structure becomes unstable."""
     force, lacking = basis.T @ frame.force, basis.T @ _forces(frame, np.zeros(frame.x.size))[0]
     moved, reached, step = np.zeros(frame.x.size), 0.0, 0.25
     while reached < 1.0:
@@ -307,7 +309,7 @@ def follow(frame: Frame, basis: np.ndarray) -> np.ndarray | None:
 
 
 def _held_start(frame: Frame, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return displacement, tensions and active cables of the loaded structure with held joints."""
+    """Return initial displacement, tensions and active cables of the loaded structure with held joints."""
     active = np.ones(len(frame.stiffness), dtype=bool)
     # A cable with a negative preload is slack in the reference configuration.
     active[frame.cables & (frame.tension < 0)] = False
@@ -326,7 +328,7 @@ def _held_start(frame: Frame, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def load_factor(frame: Frame, basis: np.ndarray) -> float:
-    """Return the largest multiple of the loads, up to 10, that forces within the friction limits balance.
+    """Return the largest multiple of the loads, up to 10, that bar forces and friction within its limits can balance.
 
     Loads are dead loads. Tensions of springs and bars are unlimited, those of cables are at least 0.
 
@@ -353,8 +355,8 @@ def load_factor(frame: Frame, basis: np.ndarray) -> float:
 
 
 def _slid_start(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.ndarray, class_a: bool) -> np.ndarray:
-    """Return the initial displacement with slipping sliders, which minimises energy plus heat: least squares within
-    bounds for the friction forces."""
+    """Return the initial displacement with slipping sliders. It minimises energy plus frictional heat: a least-squares
+    problem with bounds on the friction forces."""
     basis, slides = (free, frame.slides()) if class_a else (held, np.zeros((0, frame.x.size)))
     drawn = np.where(active, frame.tension, 0.0)
     stiffness = basis.T @ (frame.elastic(active) + frame.geometric(drawn)) @ basis
@@ -399,9 +401,9 @@ def _has_slack(frame: Frame, held: np.ndarray, active: np.ndarray) -> bool:
 
 
 def _stands_heat(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.ndarray, tension: np.ndarray) -> bool:
-    """Return whether a structure is stable at the extremes of its programs, without the slack cables there.
+    """Return whether a structure is stable at the extremes of its temperature programs, without the cables slack there.
 
-    :param free: basis of the motions to examine
+    :param free: basis of the displacements to examine
     """
     for heat in frame.thermal_tensions():
         # Yielding joints reduce bar forces, so held joints give the largest forces.
@@ -453,7 +455,7 @@ def judge(document: Document) -> Verdict:
 
 
 def basis_solution(frame: Frame, basis: np.ndarray, active: np.ndarray, heat: np.ndarray) -> np.ndarray:
-    """Return the tensions due to temperature of a structure with held joints."""
+    """Return the thermal forces (tensions) of a structure with held joints."""
     stiffness = basis.T @ frame.elastic(active) @ basis
     moved = basis @ np.linalg.lstsq(stiffness, -basis.T @ (frame.rows.T @ heat), rcond=1e-12)[0]
     return np.asarray(heat + frame.stiffness * active * (frame.rows @ moved))

@@ -13,7 +13,7 @@ Random = np.random.Generator
 
 
 def _girder(rng: Random, bays: int) -> tuple[Sketch, float, float]:
-    """Return the chords of a girder, the length of a bay and the depth."""
+    """Return the chords of a girder, the length of a bay, and the depth of the girder."""
     made = Sketch(2)
     bay = float(rng.choice([0.3, 0.5, 1.0, 1.5, 2.0]))
     depth = bay * float(rng.uniform(0.6, 1.6))
@@ -161,7 +161,7 @@ def rib(rng: Random, bays: int) -> Sketch:
 
 
 def scissor(rng: Random, bays: int) -> Sketch:
-    """Scissor mast: crossed bars with bending stiffness in their middles, and cables across the levels."""
+    """Scissor mast: crossed bars with bending stiffness at their middle hinges, and cables across the levels."""
     made = Sketch(2)
     bay = float(rng.uniform(0.3, 1.0))
     bending = float(rng.uniform(2e3, 5e4))
@@ -213,7 +213,7 @@ def bracket(rng: Random, bays: int) -> Sketch:
 
 
 def chain(rng: Random, bays: int) -> Sketch:
-    """Rail on feet in a row, held at one end or only by friction."""
+    """A rail on a row of feet, held at one end or only by friction."""
     made = Sketch(2)
     bay = float(rng.uniform(0.2, 2))
     held = rng.random() < 0.85

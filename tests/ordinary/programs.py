@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperature programs as in orbits: plateaus, shade, cold first, several cycles, intervals without change."""
+"""Temperature programs as in orbits: plateaus, shade, cooling first, several cycles, intervals of constant temperature.
+"""
 from __future__ import annotations
 
 import numpy as np
@@ -19,7 +20,7 @@ TABLES: dict[str, list[float]] = {
 
 
 def table(kind: str, largest_K: float, period_s: float, cycles: int) -> Document:
-    """Return a program of table rows with the duration of a period."""
+    """Return a temperature program from table rows, with a given period."""
     values = TABLES[kind]
     times = np.linspace(0, period_s, len(values))
     return {
@@ -40,7 +41,7 @@ def program(rng: Random) -> Document:
 
 
 def of_others(rng: Random, common: Document) -> Document:
-    """Return the program of shaded parts: duration of the common one, smaller change, another shape."""
+    """Return the program of shaded bars: the common duration, a smaller change, another shape."""
     table_s = common.get("table_time_s")
     period, cycles = table_s[-1] if table_s else common["period_s"], common["cycles"]
     largest = float(np.round(rng.uniform(5, 60), 1)) * (1 if rng.random() < 0.5 else -1)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reduces a failing structure while its failure and the verdict of theory stay the same.
+"""Removes items from a failing structure as long as its failure and the verdict of theory stay the same.
 
-    PYTHONPATH=build/python tests/ordinary/shrink.py FAMILY SEED [--to FILE.toml] [--minutes 3]
+PYTHONPATH=build/python tests/ordinary/shrink.py FAMILY SEED [--to FILE.toml] [--minutes 3]
 """
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _without_joints(document: Document, gone: list[tuple[str, str]]) -> Document
 
 
 def _parts(names: list[Any]) -> Iterator[list[Any]]:
-    """Yield parts of a list to omit: halves, quarters, ..., single items."""
+    """Yield parts of a list to remove: halves, quarters, ..., single items."""
     length = len(names) // 2
     while length > 1:
         for start in range(0, len(names), length):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A structure under construction: nodes, bars, supports, and possible positions of joints; later a case document."""
+"""A structure under construction: nodes, bars, supports, and possible positions of joints. It is converted to a case
+document."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -16,7 +17,7 @@ CLEARANCE = ("revolute", "ball_joint")  # joints whose parts play in each other
 
 @dataclass
 class Bar:
-    """A bar with its current end nodes; ``drawn`` has the end nodes of the shape without joints."""
+    """A bar with its current end nodes; ``drawn`` are its end nodes in the shape without joints."""
 
     ends: list[str]
     role: str
@@ -93,7 +94,7 @@ class Sketch:
         return sum(len(self.items.get(section, ())) for section in JOINTS)
 
     def detach(self, bar: str, side: int) -> tuple[str, str]:
-        """Move an end of a bar to a new node at the same position; return the old and the new node."""
+        """Move an end of a bar to a new node at the same position; return the old and the new node name."""
         old = self.bars[bar].ends[side]
         new = f"{old}_of_{bar}"
         self.points[new] = self.points[old].copy()

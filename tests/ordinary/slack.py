@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Comparison of quasi-static solver, motion and DEM for redundant structures whose pins have play.
+"""Compares quasi-static solver, truss dynamics and DEM for redundant structures whose pins have play.
 
     PYTHONPATH=build/python tests/ordinary/slack.py [--only pratt_3 ...] [--models solver motion dem] [--write FOLDER]
 
 Some bars end in pins with clearance, and the structure is stiff without these bars. A slack bar carries no force and
-its position is undetermined; in motion and in the DEM, dashpots in the pins bring it to rest. For each structure and
-model the table has the differences from the quasi-static solver for all parts that carry force, and the eccentricity of
-pins with play over their clearance.
+its position is undetermined; in both dynamic models dashpots in the pins bring it to rest. For each structure and model
+the table has the differences from the quasi-static solver for all bars that carry force, and the eccentricity of pins
+with play, over the clearance.
 """
 from __future__ import annotations
 
@@ -53,12 +53,12 @@ PLAY = 1.001
 
 @dataclass(frozen=True)
 class Agreement:
-    """Differences of a model from the solver.
+    """Differences of a model from the quasi-static solver.
 
     :param displacement: largest rms difference of a node that carries force, over the largest displacement
-    :param jump: largest difference of their jumps, over the largest displacement
-    :param force: largest rms difference of axial forces, over the largest
-    :param play: largest eccentricity of a pin without contact over its clearance; NaN: always in contact
+    :param jump: largest difference of the jumps of these nodes, over the largest displacement
+    :param force: largest rms difference of an axial force, over the largest axial force
+    :param play: largest eccentricity of a pin without contact, over its clearance; NaN: always in contact
     :param slack: fraction of the samples in which some pin has no contact
     """
 
@@ -75,7 +75,7 @@ class Agreement:
 
 
 def stiff(made: Sketch, without: list[str]) -> bool:
-    """Return whether a shape is clearly stiff without some of its bars."""
+    """Return whether a shape is clearly stiff without the given bars."""
     kept = Sketch(made.dimension, made.points, made.fixed, made.guides,
                   {name: bar for name, bar in made.bars.items() if name not in without})
     heat = {"shape": "triangle", "temperature_change_max_K": 1.0, "period_s": 1.0}
@@ -86,7 +86,7 @@ def stiff(made: Sketch, without: list[str]) -> bool:
 
 
 def document(family: str, seed: int, bays: int) -> Document:
-    """Return the case of a redundant structure with as many bars with play as it can lose without becoming a
+    """Return the case of a redundant structure with play in many bars: as many as can be removed without leaving a
     mechanism."""
     rng = structures.random_of(f"slack_{family}", seed)
     made = structures.SHAPES[family](rng, bays)
@@ -118,8 +118,8 @@ def document(family: str, seed: int, bays: int) -> Document:
 
 
 def pins(run: Run) -> list[tuple[str, str, np.ndarray, np.ndarray]]:
-    """Return for every pin: node at the end of its bar, name, eccentricity over clearance at every sample, and samples
-    without contact."""
+    """Return for every pin: the node at the end of its bar, its name, its eccentricity over the clearance at every
+    sample, and which samples have no contact."""
     found, case = [], run.definition
     for section, node, before in (("revolute", "journal_node", ""), ("ball_joint", "ball_node", "ball_")):
         for number, joint in enumerate(getattr(case, section)):
@@ -155,7 +155,7 @@ def models(case: Any) -> dict[str, Callable[[], Run]]:
 
 
 def rows(case: Any, chosen: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield a row of the table for each model, and its fault, "" for none."""
+    """Yield a table row for each model, and the fault of the model ("" for none)."""
     exact: Run | None = None
     joints = case.definition.resolve().number_of_joints()
     for model in chosen:

@@ -15,7 +15,7 @@ X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 
 
 def _mount(made: Sketch, names: list[str]) -> None:
-    """Hold a body in six directions; feet slide away from the first one."""
+    """Support a body in six directions; feet can slide away from the first foot."""
     first, second, third, *others = names
     made.fixed |= {first: "xyz", second: "yz", third: "z", **{name: "z" for name in others}}
     made.feet.append(Foot(second, X, "yz"))
@@ -24,7 +24,7 @@ def _mount(made: Sketch, names: list[str]) -> None:
 
 
 def lattice(rng: Random, bays: int, sides: int, upright: bool) -> Sketch:
-    """Lattice boom or tower: legs, battens, diagonals; one with four sides has bracing across."""
+    """Lattice boom or tower of legs, battens and diagonals; with four sides also bracing across."""
     made = Sketch(3, down=DOWN)
     radius, bay = float(rng.uniform(0.1, 0.8)), float(rng.uniform(0.3, 1.5))
     taper = float(rng.uniform(0, 0.6)) / bays if upright else 0.0
@@ -65,7 +65,7 @@ def mast(rng: Random, bays: int) -> Sketch:
 
 
 def tripod(rng: Random, bays: int) -> Sketch:
-    """Three to six legs that meet at one point, or at two."""
+    """Three to six legs that meet at one node or at two nodes."""
     made, legs = Sketch(3, down=DOWN), int(rng.integers(3, 7))
     height, spread = float(rng.uniform(0.3, 2)), float(rng.uniform(0.3, 1))
     made.node("top", 0, 0, height)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ordinary structures, each determined by a family and a seed.
 
-A structure is a case document with default settings, plus known facts: its load and its joints.
+A structure is a case document with default settings, plus facts known from its generation: its load and its joints.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SHAPES = {**planar.SHAPES, **spatial.SHAPES}
 class Structure:
     """A case document and the facts known from its generation.
 
-    :param walk_m: walk of its middle per cycle [m], if theory predicts it
+    :param walk_m: displacement of its middle per cycle [m], if theory predicts a walk
     """
 
     family: str
@@ -55,7 +55,7 @@ class Structure:
 
 
 def random_of(family: str, seed: int) -> Random:
-    """Return the generator of a structure; families are independent for one seed."""
+    """Return the random generator of a structure; families with the same seed are independent."""
     return np.random.default_rng([seed, crc32(family.encode())])
 
 
@@ -129,6 +129,6 @@ def make(family: str, seed: int) -> Structure:
 
 
 def sample(count: int, seed: int, families: list[str] | None = None) -> list[tuple[str, int]]:
-    """Return families and seeds of a campaign: one family after the other."""
+    """Return families and seeds of a campaign, with the families in turn."""
     chosen = families or list(FAMILIES)
     return [(chosen[number % len(chosen)], seed + number // len(chosen)) for number in range(count)]

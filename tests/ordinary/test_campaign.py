@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The campaign of structures: a crash or a time-out is a row, and wrong reasons are detected."""
+"""The campaign of structures: a crash or a time-out gives a table row, and invalid reasons are detected."""
 from __future__ import annotations
 
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random trusses without loads and joints expand freely. The whole campaign is free_expansion.py."""
+"""Random trusses without loads and joints expand freely. free_expansion.py runs the whole campaign."""
 from __future__ import annotations
 
 from copy import deepcopy
@@ -20,7 +20,7 @@ def test_the_sample_has_determinate_and_redundant_trusses_in_plane_and_space() -
 
 
 def test_a_bar_that_is_too_warm_is_noticed() -> None:
-    """By a millionth, in a redundant truss, where the other bars restrain it."""
+    """A bar of a redundant truss is too warm by 1e-6 of ΔT; the other bars restrain it."""
     one = next(one for one in SAMPLE if one.redundant > 0 and one.document["thermal"].get("temperature_change_max_K"))
     made = deepcopy(one.document)
     made["link"][0]["temperature_fraction"] = 1 + 1e-6

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures with play larger than the deformation by loads and temperatures. Each represents a kind of path that the
-solver once did not find."""
+"""Structures with play larger than the deformation by loads and temperatures. Each represents a type of path that an
+earlier solver did not find."""
 from __future__ import annotations
 
 import pytest

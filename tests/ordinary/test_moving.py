@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures whose contacts open and close during time steps that are long compared with the motion between."""
+"""Structures whose contacts open and close within time steps that are long compared with the motion between contacts.
+"""
 from __future__ import annotations
 
 import numpy as np
@@ -21,7 +22,7 @@ def test_parts_without_number_end_by_name() -> None:
 
 @pytest.mark.parametrize(("family", "seed"), [("pratt", 501), ("umbrella", 511)])
 def test_lost_contacts_make_no_energy(family: str, seed: int) -> None:
-    """The work of loads, temperature and elastic parts exceeds the losses plus the kinetic energy."""
+    """The work of loads and temperature plus the elastic energy exceeds the losses plus the kinetic energy."""
     run = sj.load(structures.make(family, seed).document).reduced(dynamic=True)
     # Works have changing signs.
     given = np.abs(np.diff(run["thermal_work_J"])).sum() + np.abs(np.diff(run["external_work_J"])).sum()

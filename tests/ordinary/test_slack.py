@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Slack parts: solver, motion and DEM agree, also with steps much longer than all periods."""
+"""Structures with slack bars: solver, truss dynamics and DEM agree, also with steps much longer than all periods."""
 from __future__ import annotations
 
 import numpy as np

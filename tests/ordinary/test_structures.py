@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures depend only on family and seed; the oracle agrees with hand calculations."""
+"""A structure depends only on family and seed; the oracle (theory) agrees with hand calculations."""
 from __future__ import annotations
 
 import json
@@ -25,7 +25,7 @@ def finished(made: Sketch) -> Document:
 
 
 def block(load_N: float, limit_N: float, bar: bool = False, **stops: float) -> Document:
-    """A block on a rail pushed by a load, optionally held by a bar."""
+    """A block on a rail, pushed by a load; a bar may hold it."""
     made = Sketch(2)
     made.node("G", 0, 0, fixed="xy")
     made.node("P", 1, 0, fixed="y")
@@ -151,7 +151,7 @@ def test_walking_sheets_have_one_block_of_tolerance() -> None:
 
 @pytest.mark.parametrize("seed", [1016, 1022, 1059])
 def test_bars_that_bend_at_a_hinge_keep_it_between_them(seed: int) -> None:
-    """A fitting detaches at most one of the bars at a scissor's hinge: a torsion spring needs a common node."""
+    """A joint separates at most one of the bars at a scissor's hinge, because a torsion spring needs a common node."""
     made = structures.make("scissor", seed).document
     ends = {link["name"]: set(link["nodes"]) for link in made["link"]}
     joined = [set(slider["nodes"]) for slider in made.get("slider", made.get("iwan_joint", []))]

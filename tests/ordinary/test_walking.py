@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sheets and pipes walk down an incline as theory predicts for their number of blocks; walking.py has all numbers of
-blocks."""
+"""Sheets and pipes walk down an incline as theory predicts. walking.py tests more numbers of blocks."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -27,7 +26,7 @@ def test_many_blocks_walk_as_a_sheet() -> None:
 
 
 def test_another_friction_is_noticed() -> None:
-    """By half a percent: resting blocks stay, the pipe loses more of its expansion."""
+    """With 0.5 % more friction the same blocks rest, but the pipe loses more of its expansion."""
     one = walker("pipe", 9, 0.3)
     assert not row(replace(one, friction=0.3015), solved(one, LIMIT_S))[1]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Changes of a case that do not change its jump, and the conversion of the jumps of the changed case."""
+"""Changes of a case that do not change its jump, with the conversion of jumps back to the original case."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -36,9 +36,9 @@ AXIAL = ("revolute", "torsion_spring", "latch_hinge")  # axes about which someth
 class Changed:
     """A changed case.
 
-    :param back: converts jumps by node (cycles, dimension) of the changed case to those of the first
-    :param rounding_m: rounding of lengths in the changed case [m of the first case], in addition to that of their size
-    :param exact: whether only rounding differs; else the increments differ too
+    :param back: converts jumps by node (cycles, dimension) of the changed case to those of the original case
+    :param rounding_m: additional rounding of lengths in the changed case [m of the original case]
+    :param exact: whether only rounding differs; otherwise the increments differ too
     """
 
     document: Document
@@ -76,7 +76,7 @@ def renamed(document: Document, rng: Random) -> Changed:
 
 
 def _mapped(document: Document, matrix: np.ndarray) -> Changed:
-    """Map all vectors by an orthogonal matrix that keeps z or rotates about it."""
+    """Map all vectors by an orthogonal matrix that keeps the z axis or rotates about it."""
     made, d = deepcopy(document), len(matrix)
     for section, keys in VECTORS.items():
         for item in made.get(section, []):
@@ -108,7 +108,7 @@ def _mapped(document: Document, matrix: np.ndarray) -> Changed:
 
 
 def rotated(document: Document, rng: Random) -> Changed:
-    """Rotate the structure about z; supports along only one of x and y become guides."""
+    """Rotate the structure about z; supports along only one of x and y become inclined guides."""
     angle, d = float(rng.uniform(0.2, 1.3)), document["truss"]["dimension"]
     matrix = np.eye(d)
     matrix[:2, :2] = [[cos(angle), -sin(angle)], [sin(angle), cos(angle)]]
@@ -150,7 +150,7 @@ def _rescaled(document: Document, length: float, force: float) -> Changed:
 
 
 def inches(document: Document, rng: Random) -> Changed:
-    """Write lengths in inches; areas in square millimetres exceed the range of a case."""
+    """Write lengths in inches; in millimetres, areas would exceed the range of a case."""
     return _rescaled(document, 1 / 0.0254, 1.0)
 
 

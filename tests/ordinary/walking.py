@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sheets and pipes that walk down an incline: all must finish, and the walk is compared with theory.
+"""Solves sheets and pipes that walk down an incline, and compares the walk with theory. All runs must finish.
 
     PYTHONPATH=build/python tests/ordinary/walking.py [--blocks 4 5 ...] [--friction 0.2 0.3 ...] [--kinds sheet pipe]
         [--limit 60] [--write FOLDER]
 
-A sheet of n blocks expands away from one resting block and shrinks towards another one. Because of the weight, these
-are m blocks apart. In a cycle the sheet walks by m (L/n) (α ΔT - (μ cos β - sin β) w L/EA). With infinitely many blocks
-m/n becomes tan β/μ. Each case is solved with default options in a separate process with a time limit.
+A sheet of n blocks expands away from one resting block and shrinks towards another one. Because of the weight, the two
+are m blocks apart. In a cycle the sheet (length L, weight w per length, slope β) walks by m (L/n) (α ΔT - (μ cos β -
+sin β) w L/EA). With infinitely many blocks m/n becomes tan β/μ. Each case is solved with default options in a separate
+process with a time limit.
 """
 from __future__ import annotations
 
@@ -36,7 +37,7 @@ EVENT = 1e-9
 
 @dataclass(frozen=True)
 class Walker:
-    """A row of blocks on an incline, each with a part of weight and friction.
+    """A row of blocks on an incline; each block has an equal part of weight and friction.
 
     :param weight_N_per_m: weight per length of the sheet
     :param stiffness_N: Young's modulus times area
@@ -79,8 +80,9 @@ class Walker:
     def apart(self) -> int:
         """Number of blocks between the two resting blocks.
 
-        A block rests if its friction balances the forces: of the n - 1 others, m more slide down than up, so the block
-        carries the fraction n tan β/μ - m of its friction limit. All others slide, so m has the parity of n - 1.
+        A block rests if its friction balances the forces. Of the n - 1 other blocks, m more slide down than up, so the
+        resting block carries the fraction n tan β/μ - m of its friction limit. The others all slide, so m has the
+        parity of n - 1.
         """
         share = self.blocks * math.tan(self.slope_rad) / self.friction
         odd = (self.blocks - 1) % 2
@@ -88,7 +90,7 @@ class Walker:
 
     @property
     def walk_of_blocks_m(self) -> float:
-        """Walk per cycle with this number of blocks [m], if all of them slide in heating and in cooling."""
+        """Walk per cycle [m] with this number of blocks, if every block slides during heating and during cooling."""
         return self.apart * self.length_m / self.blocks * self._strain
 
     def document(self) -> Document:
@@ -110,7 +112,8 @@ class Walker:
 
 def walker(kind: str, blocks: int, friction: float) -> Walker:
     """Return a lead roof sheet (6 m long, 2.4 mm thick) or a steel pipeline (4 km). With the largest friction,
-    compression takes up a third of the expansion of the pipeline. No slope balances a number of blocks exactly."""
+    compression reduces the pipeline's expansion by a third. Slopes are chosen so that no number of blocks is exactly in
+    balance."""
     name = f"{kind}_{blocks}_{1000 * friction:.0f}"
     if kind == "sheet":
         return Walker(name, blocks, friction, 0.13, 6.0, 150.0, 1.6e10, 2.4e-3, 2.9e-5, 40.0)
@@ -132,7 +135,7 @@ def _solve(document: Document, limit_s: float, answer: Connection) -> None:
 
 
 def solved(one: Walker, limit_s: float) -> dict[str, Any]:
-    """Return the walks of all cycles but the first, or the message of the failure."""
+    """Return the walk of every cycle except the first, or the message of the failure."""
     context = get_context("fork")
     mine, theirs = context.Pipe(False)
     process = context.Process(target=_solve, args=(one.document(), limit_s, theirs))
@@ -149,7 +152,7 @@ def solved(one: Walker, limit_s: float) -> dict[str, Any]:
 
 
 def row(one: Walker, found: dict[str, Any]) -> tuple[str, bool]:
-    """Return the row of the table, and whether the sheet finished and walks as theory predicts."""
+    """Return the table row, and whether the structure finished and walks as theory predicts."""
     start = f"| {one.name.split('_')[0]} | {one.blocks} | {one.friction:g} |"
     if "walks_m" not in found:
         return f"{start} {found['sentence']} | | | {found['seconds']:.2f} |", False

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Solves the structures named on standard input, one per line, and answers with two lines of JSON: verdict of theory,
-and result of the solver. It is a separate process, because a solver may crash. SIGPROF ends it if the solver exceeds
-the CPU time in the argument [s]."""
+"""Solves the structures named on standard input, one per line, and answers each with two lines of JSON: verdict of
+theory, and result of the solver. This is a separate process, because a solver may crash. SIGPROF ends it if the solver
+exceeds the CPU time given as argument [s]."""
 from __future__ import annotations
 
 import json
@@ -63,7 +63,7 @@ def numbers(found: Any) -> dict[str, Any]:
 
 
 def apart(document: Document, found: dict[str, Any]) -> float:
-    """Return the difference of a run from the theory of small displacements, over the largest displacement."""
+    """Return the largest difference of a run from small-displacement theory, over the largest displacement."""
     expected = evolution.ends(document)
     got = found["ends"][:, :, : document["truss"]["dimension"]].reshape(len(expected), -1)
     return float(np.abs(got - expected).max()) / max(found["largest_m"], found["free_m"])

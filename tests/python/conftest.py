@@ -37,12 +37,12 @@ class Outcome:
 
 
 def results_in(folder: Path) -> list[str]:
-    """Return the names of results in a folder, without the file of their owner."""
+    """Return the names of results in a folder, without the file that marks the folder's owner."""
     return sorted(entry.name for entry in folder.iterdir() if entry.name != ".case.json")
 
 
 def sealed(path: Path) -> Path:
-    """Give a changed HDF5 file a valid checksum, to test the checks after it."""
+    """Give a changed HDF5 file a valid checksum, to test the checks after the checksum."""
     from statejump.core.hdf5 import HEAD_BYTES, head
 
     content = path.read_bytes()
@@ -66,7 +66,8 @@ SPREADING = ("montecarlo", "sweep")
 
 @pytest.fixture
 def statejump_process(tmp_path: Path) -> Callable[..., Outcome]:
-    """Return a function that runs the command in a separate process and folder, with these environment variables."""
+    """Return a function that runs the command in a separate process and folder, with the given environment variables.
+    """
 
     def run(*arguments: object, **environment: str) -> Outcome:
         done = subprocess.run(
@@ -85,7 +86,7 @@ def statejump_process(tmp_path: Path) -> Callable[..., Outcome]:
 def statejump(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, statejump_process: Callable[..., Outcome]
 ) -> Callable[..., Outcome]:
-    """Return a function that runs the command in a separate folder; in this process if that makes no difference."""
+    """Return a function that runs the command in a separate folder; in this process where possible, to save time."""
     from statejump.cli import main
 
     def run(*arguments: object, **environment: str) -> Outcome:
@@ -115,7 +116,7 @@ def cases() -> Path:
 
 @pytest.fixture
 def edited(tmp_path: Path, cases: Path) -> Callable[..., Path]:
-    """Write a case file with replacements to bad.toml. Each old text must exist."""
+    """Write a case file with text replacements to bad.toml. Each text to replace must occur."""
 
     def write(*replacements: tuple[str, str], case: str = "table1") -> Path:
         text = (cases / f"{case}.toml").read_text()
@@ -130,7 +131,7 @@ def edited(tmp_path: Path, cases: Path) -> Callable[..., Path]:
 
 
 def damaged(original: dict[str, Any], values: list[Any], count: int) -> Iterator[dict[str, Any]]:
-    """Yield copies of a parsed case file in which up to three values, keys or sections are wrong."""
+    """Yield copies of a parsed case file with up to three wrong values, keys or sections."""
     rng = random.Random(1)
     for _ in range(count):
         data = {section: dict(keys) for section, keys in original.items()}
@@ -158,7 +159,7 @@ def yade() -> str:
 
 @pytest.fixture
 def fake_yade(yade: str, tmp_path: Path) -> Callable[[str], str]:
-    """Return a function that writes a shell script as a replacement of yade, and returns its path."""
+    """Return a function that writes a shell script to use in place of yade, and returns its path."""
 
     def write(body: str) -> str:
         path = tmp_path / "fake-yade"

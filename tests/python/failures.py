@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Expected errors in tests: codes and fields. Only the test of the generated page compares sentences."""
+"""Expected errors in tests, as codes and fields. Only the test of the generated page compares message texts."""
 from __future__ import annotations
 
 import json
@@ -19,8 +19,8 @@ ROUNDING = 1e-12
 
 
 class Failure:
-    """Code and fields of an expected error. It equals every error with these values, of the package, of the engine or
-    as JSON; further fields are ignored."""
+    """Code and fields of an expected error. It equals every error with these values, from the package, from the engine
+    or as JSON; an error may have further fields."""
 
     def __init__(self, code: str, **fields: Any) -> None:
         self.code, self.fields = code, fields

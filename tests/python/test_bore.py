@@ -147,7 +147,7 @@ def test_too_coarse(tmp_path: Path):
 
 
 def test_section_that_is_no_ring():
-    """The centre of its circle lies outside of it, so the angle along it reverses."""
+    """The centre of the section's circle lies outside of the section, so the angle along it reverses."""
     angle = bore.angles_rad()
 
     class Corner:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaigns: samples, messages, both models, resume after a kill, the same bytes in any way of running."""
+"""Campaigns: samples, messages, both models, resuming after a kill, identical bytes for any number of workers."""
 from __future__ import annotations
 
 import csv
@@ -421,7 +421,7 @@ def test_outcomes_are_what_kinds_say_before_any_run(cases: Path) -> None:
 
 
 def test_failures_are_counted_by_their_fields() -> None:
-    """Two failures of one kind differ in their numbers, but a range is not one of them."""
+    """Failures that differ only in their numbers are counted as one; limits of a range are not such numbers."""
     first, second = (
         sj.errors.FailedRun("the run failed", cause="it buckles", time_s=time_s, temperature_change_K=10 * time_s)
         for time_s in (0.25, 0.5)
@@ -433,7 +433,7 @@ def test_failures_are_counted_by_their_fields() -> None:
 
 
 def test_workers_know_kinds_of_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A worker imports a user's kind from the same place as this process, and its samples are equal."""
+    """A worker imports a user's kind from the same file as this process, and both compute equal samples."""
     from statejump import kinds
 
     monkeypatch.syspath_prepend(str(Path(__file__).resolve().parent / "toy"))
@@ -578,8 +578,8 @@ def test_changed_campaign_is_refused(tmp_path: Path, write: Callable[..., Path])
 
 
 def test_damaged_journal(tmp_path: Path, write: Callable[..., Path]) -> None:
-    """Any altered byte in any line but the last makes the journal invalid. A torn or altered last line is removed, and
-    its samples are run again."""
+    """An altered byte in any line except the last makes the campaign's journal invalid. An incomplete or altered last
+    line is removed, and its samples are run again."""
     campaign = load_campaign(write(), MONTECARLO)
     path = tmp_path / journal.NAME
     with journal.Journal(tmp_path, campaign, restart=False) as kept:
@@ -609,7 +609,7 @@ def test_damaged_journal(tmp_path: Path, write: Callable[..., Path]) -> None:
 
 @pytest.fixture
 def short(tmp_path: Path, cases: Path) -> str:
-    """A case whose DEM run is short; its cycle is not quite quasi-static."""
+    """A case with a short DEM run; its cycle is not slow enough to be quasi-static."""
     text = (cases / "table1.toml").read_text()
     for old, new in (("period_s = 1.0", "period_s = 0.05"), ("samples_per_cycle = 2000", "samples_per_cycle = 400")):
         assert old in text

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outputs of campaigns: any column of a run at a named item, and errors before any run."""
+"""Outputs of campaigns: any column of a run for a named node or joint, and errors reported before any run."""
 from __future__ import annotations
 
 import csv
@@ -37,7 +37,7 @@ def test_outputs_are_the_columns_of_the_run() -> None:
 
 
 def test_ends_alone_need_no_full_run() -> None:
-    """The quick model has two samples; its jumps agree to the tolerance of located events, 1e-9."""
+    """Outputs at cycle ends use a quick run with two samples; its jumps agree with a full run's to 1e-6."""
     case = sj.load(TRUSS)
     node = case.node[3].name
     found = sj.sweep(case, {"thermal.cycles": [1]}, outputs=[f"jump:displacement_m[{node}].x"]).frame()
@@ -57,7 +57,8 @@ def test_outputs_of_a_surface_are_its_history() -> None:
 
 
 def test_a_place_repeats_as_well_as_returns_of_the_temperature_agree() -> None:
-    """After heating the block is f l0/(E A) ahead of its initial position, after cooling as much behind it."""
+    """After heating the block is f l0/(E A) ahead of its initial position, after cooling the same distance behind it.
+    """
     table = {"thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.period_s": None}
     days = {**table, "thermal.table_time_s": [0, 1, 2, 3, 4, 5, 6],
             "thermal.table_temperature_change_K": [0, 100, 0, -10, 0, 90, 0]}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Capabilities of kinds: every named function has the arguments of its protocol, and a case is a single object."""
+"""Capabilities of kinds of cases: every named function has the arguments of its protocol, and a case is a single
+object."""
 from __future__ import annotations
 
 import inspect

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks between several keys of a case, just within and just beyond the limit, and values derived by cases."""
+"""Checks that involve several keys of a case, just within and just beyond the limit; also values derived by cases."""
 from __future__ import annotations
 
 import copy
@@ -22,7 +22,7 @@ DOCUMENTS: dict[str, dict[str, Any]] = {}
 
 
 def document(name: str, changes: dict[str, Any]) -> dict[str, Any]:
-    """A shipped case file, changed by a list of values by ``section.key``."""
+    """A shipped case file with changed values, given by ``section.key``."""
     if name not in DOCUMENTS:
         DOCUMENTS[name] = tomllib.loads((REPOSITORY / "cases" / f"{name}.toml").read_text(encoding="utf-8"))
     found = copy.deepcopy(DOCUMENTS[name])

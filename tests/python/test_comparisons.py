@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Comparisons by hand: rows of the kinds, of finite elements, of two files."""
+"""Comparisons checked by hand: rows of each kind of case, of finite elements, of two files."""
 from __future__ import annotations
 
 import json

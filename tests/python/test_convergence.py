@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convergence of the DEM: table and text follow from the case and the numbers."""
+"""Convergence of the DEM: table and text are derived from the case and the numbers."""
 from __future__ import annotations
 
 import csv
@@ -18,7 +18,7 @@ from studies.paper import convergence
 
 
 def dem_like(case: SpringSliderCase, error_m: float) -> Run:
-    """The exact run in the form of a DEM run, with a known error that grows over the run."""
+    """The exact run in the form of a DEM run, with a known error that grows with time."""
     exact = case.reduced()
     columns = exact.flat()
     stage = columns.pop("stage")
@@ -34,7 +34,7 @@ def dem_like(case: SpringSliderCase, error_m: float) -> Run:
 
 
 def found_of(case: SpringSliderCase) -> convergence.Convergence:
-    """A study whose errors decrease with the rate, and in proportion to the step."""
+    """A study whose errors decrease with the heating rate and are proportional to the time step."""
     slower, finer = convergence.variants(case)
     runs = ([dem_like(variant, 1e-8 / (1 + place)) for place, variant in enumerate(slower)],
             [dem_like(variant, 1e-8 * variant.dem_settings.time_step_fraction) for variant in finer])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decks of CalculiX and Abaqus: keywords, sets, steps, and closed forms for every kind of keyword."""
+"""Decks of CalculiX and Abaqus: keywords, sets, steps, and a closed form for every keyword."""
 from __future__ import annotations
 
 import time
@@ -43,7 +43,7 @@ def made(folder: Path, text: str, change: float | None = 0.0, **options: Any) ->
 
 
 def moved(document: dict[str, Any], node: str = "N2", axis: int = 0) -> float:
-    """Return the displacement of a node at the peak of the temperature."""
+    """Return the displacement of a node at the largest temperature change."""
     run = sj.load(document).reduced()
     at = int(np.argmax(np.abs(run.history["temperature_change_K"].values)))
     names = [item["name"] for item in document["node"]]
@@ -293,7 +293,8 @@ def test_what_matters_and_is_not_supported_is_named(name: str, tmp_path: Path) -
 
 @pytest.mark.parametrize("peak", [120.0, 60.0, -40.0])
 def test_coefficients_follow_the_temperature_from_their_zero(peak: float, tmp_path: Path) -> None:
-    """Secants of 2e-5, 2.5e-5 and 2.2e-5 1/K at 0, 50 and 100 degrees with ZERO=10; stress-free at 20, with 2.2e-5."""
+    """Secant expansion coefficients of 2e-5, 2.5e-5 and 2.2e-5 1/K at 0, 50 and 100 °C with ZERO=10; stress-free at 20
+    °C."""
     text = MODEL.replace("*EXPANSION\n2.3e-5\n", "*EXPANSION, ZERO=10.\n2.e-5, 0.\n2.5e-5, 50.\n2.2e-5, 100.\n")
     text += f"*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 20.\n*STEP\n*STATIC\n*TEMPERATURE\nNALL, {peak}\n*END STEP\n"
     case = sj.load(made(tmp_path, text, None))
@@ -311,7 +312,8 @@ def test_lines_of_a_solid_are_no_elements(tmp_path: Path) -> None:
 
 
 def test_reading_is_linear(tmp_path: Path) -> None:
-    """2000 GENERATE lines on 40 000 nodes took 28 s; eight times the lines may take at most 16 times as long."""
+    """Reading 2000 GENERATE lines on 40 000 nodes once took 28 s; eight times the lines may take at most 16 times as
+    long."""
     count = 40_000
     nodes = "*NODE\n" + "".join(f"{number}, {number}., 0., 0.\n" for number in range(1, count + 1))
     rest = MODEL.replace(NODES, "").replace("*BOUNDARY", "{sets}*BOUNDARY")

@@ -100,14 +100,14 @@ def bent(text: str) -> str:
     ("what is held on both sides needs none", "MPC,7,2,1,-2.,3,1,2.\nSPC1,1,23,2,THRU,3\n"),
 ])
 def test_nodes_at_one_place_become_one(name: str, cards: str, tmp_path: Path) -> None:
-    """The nodes 2 and 3 are merged, so both rods elongate by 1 mm."""
+    """A rigid connection merges nodes 2 and 3, so both rods elongate by 1 mm."""
     document = made(tmp_path, HEAD + RODS + END + cards)
     assert {item["name"] for item in document["node"]} == {"N1", "N2", "N4"}
     assert moved(document, "N4")[0] == pytest.approx(2e-3, rel=1e-12)
 
 
 def test_springs_masses_and_supports_move_with_their_node(tmp_path: Path) -> None:
-    """In y a spring of 1e6 N/m carries 1000 N; in x node 3 is held, so only its rod elongates."""
+    """The merged node has a spring of 1e6 N/m along y with 1000 N. Node 3 is held along x, so one rod elongates."""
     cards = "SPC1,1,1,3\nCELAS2,8,1.+6,3,2\nFORCE,5,3,,1000.,0.,1.,0.\nCONM2,2,3,,4.\nCONM2,1,2,,3.\n"
     document = made(tmp_path, HEAD + RODS + END + cards + "RBAR,9,2,3,123456\n")
     joint = next(item for item in document["node"] if item["name"] == "N2")
@@ -146,7 +146,7 @@ def test_an_equation_of_one_displacement_is_a_support(tmp_path: Path) -> None:
 ])
 def test_equations_between_nodes_at_which_bars_end_are_constraints(name: str, cards: str, moves: float,
                                                                    tmp_path: Path) -> None:
-    """The first rod ends at node 2, the second pulls node 3 with 7000 N; 7000 N elongate each by 1 mm."""
+    """The first rod ends at node 2, the second pulls node 3 with 7000 N, which elongates each rod by 1 mm."""
     document = made(tmp_path, HEAD + RODS + END + cards)
     assert document["constraint"]
     assert moved(document, "N4")[0] == pytest.approx(moves, rel=1e-9)
@@ -160,7 +160,7 @@ def test_a_mass_moves_with_the_node_of_an_equation(tmp_path: Path) -> None:
 
 
 def test_a_mean_shares_its_load_by_weights_and_levers(tmp_path: Path) -> None:
-    """With weights 1 and 3, the nodes 2 and 4 carry 1/4 and 3/4 of a force along both."""
+    """An RBE3 mean has weights 1 and 3: nodes 2 and 4 carry 1/4 and 3/4 of a force along both rods."""
     rest = RODS.replace("CROD,2,1,3,4", "CROD,2,1,2,4").replace("GRID,3,,1.,0.,0.\n", "").replace("2.,.5,0.", "9.,0.,0.")
     cards = "RBE3,9,,5,12,1.,123,2,3.,\n,123,4\nFORCE,5,5,,7000.,1.,0.,0.\n"
     document = made(tmp_path, HEAD + rest + cards)
@@ -354,7 +354,7 @@ def test_an_amplitude_of_one_value_is_known_in_every_step(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("shape, factor", [("RECT", 1.0), ("CIRC", pi / 4)])
 def test_sizes_of_nodes_make_a_taper(shape: str, factor: float, tmp_path: Path) -> None:
-    """Sizes of 10 x 20 and 20 x 10 mm: the integral of dx / ((1 + x) (2 - x)) is 2 ln 2 / 3."""
+    """A section tapers from 10 x 20 to 20 x 10 mm: the integral of dx / ((1 + x) (2 - x)) is 2 ln 2 / 3."""
     text = INP.replace("2, 3, 4\n*MAT", "2, 2, 4\n*MAT").replace("TYPE=T3D2", "TYPE=B31").replace(
         "*SOLID SECTION, ELSET=BARS, MATERIAL=AL\n1.E-4",
         f"*DENSITY\n2700.\n*BEAM SECTION, ELSET=BARS, MATERIAL=AL, SECTION={shape}, NODAL THICKNESS\n1., 1.\n"

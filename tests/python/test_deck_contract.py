@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every card, field and parameter is in exactly one class, and the documentation lists them."""
+"""Every card, field and parameter of a deck is in exactly one class, and the documentation lists it."""
 from __future__ import annotations
 
 import importlib.util

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decks of Nastran: fields of cards as in the manuals, and closed forms for every kind of card."""
+"""Decks of Nastran: fields of cards as in the manuals, and a closed form for every card."""
 from __future__ import annotations
 
 from math import pi
@@ -37,7 +37,7 @@ def made(folder: Path, bulk: str, control: str = CONTROL, change: float | None =
 
 
 def moved(document: dict[str, Any], node: str = "N2", axis: int = 0) -> float:
-    """Return the displacement of a node at the peak of the temperature."""
+    """Return the displacement of a node at the largest temperature change."""
     run = sj.load(document).reduced()
     at = int(np.argmax(np.abs(run.history["temperature_change_K"].values)))
     names = [item["name"] for item in document["node"]]
@@ -251,7 +251,7 @@ def test_coordinate_systems(name: str, tmp_path: Path) -> None:
 
 
 def test_supports_and_forces_in_their_own_systems(tmp_path: Path) -> None:
-    """A rod at 30 degrees whose end is guided along it and pulled in its direction."""
+    """A force at 30 degrees pulls the end of a rod, which is guided along that direction."""
     turned = ROD.replace("GRID,2,,1.,0.,0.", "GRID,2,5,1.,0.,0.,5").replace("FORCE,5,2,", "FORCE,5,2,5")
     turned += "CORD2R,5,,0.,0.,0.,0.,0.,1.\n,.8660254037844387,.5,0.\n"
     document = made(tmp_path, turned)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Printed quantities for a check, hints at wrong units, and options that set the units."""
+"""Units of decks: printed quantities to check them, hints at wrong units, and options that set them."""
 from __future__ import annotations
 
 from pathlib import Path

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures of runs in YADE name the joint of the case, for every kind of case and every type of part.
+"""Failures of runs in YADE name the joint of the case, for every kind of case and every type of joint or element.
 
-Failures that a case file cannot cause are caused by changing the input of YADE.
+To cause failures that a case file cannot cause, tests change the input of YADE.
 """
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def resolved(name: str) -> Values:
 
 @pytest.fixture(scope="module")
 def values() -> Callable[[str], Values]:
-    """Return a function that returns the input of YADE; every case is resolved once."""
+    """Return a function that returns the input of YADE for a case; every case is resolved once."""
     known: dict[str, Values] = {}
 
     def of(name: str) -> Values:
@@ -70,7 +70,7 @@ def above_the_floor(found: Values) -> None:
 
 
 def floors_everywhere(found: Values) -> None:
-    """All pads in one contact group, on floors that extend below their neighbours."""
+    """Put all pads into one contact group, on floors that extend below the neighbouring pads."""
     count = len(found["slider"]["names"])
     found["slider"].update(group=[0] * count, reach_m=[2.0] * count, pad_radius_m=[0.7] * count)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Codes of errors: each is declared once and used, and every error provides the fields in its sentence."""
+"""Codes of errors: each code is declared once and used, and every error provides the fields that its message needs."""
 from __future__ import annotations
 
 import ast
@@ -23,7 +23,7 @@ OWN = {"what", "code", "file", "place", "case", "item", "key", "value", "allowed
 
 
 def names_in(declared: Code) -> set[str]:
-    """Return the details of a code: those in its sentences, and further ones."""
+    """Return the fields of a code: those in its message texts, and further fields."""
     return {*declared.further, *(
         name for text in (declared.what, declared.beside, declared.cause, declared.remedy)
         for _, name, _, _ in string.Formatter().parse(text) if name is not None)}
@@ -40,7 +40,7 @@ def is_refusal_of_deck(node: ast.Call) -> bool:
 
 
 def given() -> Iterator[tuple[str, str, set[str], bool]]:
-    """Yield place, code and details of every error in the package, and whether it may have further details."""
+    """Yield position, code and fields of every error in the package, and whether it may have further fields."""
     for path, tree in TREES:
         for node in ast.walk(tree):
             if isinstance(node, ast.Call):

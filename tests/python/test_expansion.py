@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperature-dependent coefficients of expansion: the strain is their integral, in solver and DEM."""
+"""Temperature-dependent expansion coefficients: the strain is their integral, in solver and DEM."""
 from __future__ import annotations
 
 from copy import deepcopy
@@ -21,7 +21,7 @@ BAR = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-5, "density_kg_per_
 
 
 def bar(friction_N: float | None = None, **thermal: Any) -> dict[str, Any]:
-    """Return a bar along x from a fixed node to one that is free, or slides with friction."""
+    """Return a bar along x from a fixed node to a node that is free, or that slides with friction."""
     data: dict[str, Any] = {
         "case": {"name": "bar", "kind": "truss"}, "truss": {"dimension": 2},
         "node": [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
@@ -37,7 +37,7 @@ def bar(friction_N: float | None = None, **thermal: Any) -> dict[str, Any]:
 
 
 def pushed_block(play_m: float = PLAY_M, **thermal: Any) -> dict[str, Any]:
-    """Return the same bar as a ``spring_slider``, its block between two stops."""
+    """Return the bar with a block between two stops, as a ``spring_slider``."""
     table = {"temperature_change_K": ROWS_K, "thermal_expansion_per_K": ALPHA_PER_K}
     return {
         "case": {"name": "block", "kind": "spring_slider"}, "link": {**BAR, "stress_free_length_m": LENGTH_M},
@@ -48,14 +48,14 @@ def pushed_block(play_m: float = PLAY_M, **thermal: Any) -> dict[str, Any]:
 
 
 def slip_K(strain: float, bound_K: float = 0.0) -> float:
-    """Return the ΔT within 0 to 40 K at which the strain exceeds that at ``bound_K`` by ``strain``."""
+    """Return the ΔT between 0 and 40 K at which the thermal strain exceeds that at ``bound_K`` by ``strain``."""
     slope = (ALPHA_PER_K[2] - ALPHA_PER_K[1]) / ROWS_K[2]
     total = strain + integral(bound_K)
     return float((-ALPHA_PER_K[1] + np.sqrt(ALPHA_PER_K[1]**2 + 2 * slope * total)) / slope)
 
 
 def integral(change_K: float) -> float:
-    """Return ∫ α dΔT from 0 by a quadrature that includes the corners of α."""
+    """Return ∫ α dΔT from 0, by a quadrature that splits at the corners of α."""
     corners = [row for row in ROWS_K if min(change_K, 0.0) < row < max(change_K, 0.0)]
     return quad(lambda at: np.interp(at, ROWS_K, ALPHA_PER_K), 0.0, change_K, points=corners or None)[0]
 
@@ -103,7 +103,8 @@ def test_the_dem_interpolates_the_same_strain() -> None:
 
 
 def test_a_bar_on_a_slider_follows_the_integral_of_the_coefficient() -> None:
-    """Slip, stop and return at the strains of the closed forms; events have the temperatures of the program."""
+    """Slip, stop contact and return occur at the strains of the closed forms; events have temperatures of the program.
+    """
     case = sj.load(pushed_block())
     run = case.reduced()
     first = {event.kind: event for event in reversed(run.events)}
@@ -130,7 +131,7 @@ def test_a_bar_on_a_slider_follows_the_integral_of_the_coefficient() -> None:
 
 
 def test_where_the_coefficient_changes_its_sign_the_bar_turns() -> None:
-    """If the coefficient falls below 0, the bar shrinks during heating, and the block is pulled back."""
+    """If the coefficient of expansion falls below 0, the bar shrinks during heating and pulls the block back."""
     data = pushed_block(temperature_change_max_K=200.0)
     data["expansion"] = {"temperature_change_K": [0.0, 100.0, 200.0], "thermal_expansion_per_K": [2e-5, 0.0, -2e-5]}
     case = sj.load(data)
@@ -161,7 +162,7 @@ def test_histories_of_members_are_exact_at_their_rows(tmp_path: Any) -> None:
 
 
 def put(section: str, **values: Any) -> Callable[[dict[str, Any]], None]:
-    """Return a function that changes the first item of a section, or the section."""
+    """Return a function that changes keys of a section, or of the first item in a list section."""
     def change(data: dict[str, Any]) -> None:
         item = data[section][0] if isinstance(data[section], list) else data[section]
         item.update(values)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures for programs: JSON with the known fields, exit statuses, and the page of mistakes."""
+"""Failures for other programs: JSON with the documented fields, exit statuses, and the page of mistakes."""
 from __future__ import annotations
 
 import importlib.util

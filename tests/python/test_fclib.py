@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frictional contact problems: files of FCLIB, the command, and errors for invalid files."""
+"""Frictional contact problems: FCLIB files, the command, and errors for invalid files."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -156,7 +156,7 @@ def test_files_that_are_not_right(tmp_path: Path, wrong: str) -> None:
 
 
 def test_a_data_set_that_was_never_written_has_its_fill_value(tmp_path: Path) -> None:
-    """HDF5 allocates nothing for it, which is valid: Siconos writes such solutions. A too large one is still
+    """HDF5 allocates no storage for an unwritten data set; Siconos writes such solutions. An excessive size is still
     refused."""
     problem = pressed()
 
@@ -195,7 +195,8 @@ def test_arguments_out_of_range() -> None:
 
 
 def test_merit_is_that_of_siconos() -> None:
-    """An independent implementation of fc3d_compute_error: r - P_K(r - û) over the largest of |q|, |r| and |u|."""
+    """The merit equals an independent implementation of fc3d_compute_error: r - P_K(r - û), over the largest of |q|,
+    |r|, |u|."""
     problem = pressed()
     r = np.random.default_rng(3).normal(size=problem.q.size)
     u = problem.velocities(r)

@@ -56,7 +56,8 @@ def test_problems_are_solved_by_the_forces_of_the_path_and_give_them_back(tmp_pa
 
 
 def test_matrix_of_a_chain_is_its_compliance() -> None:
-    """Sliders of a chain: forces at i and j elongate the bars up to the nearer one. Normal forces are given."""
+    """Compliance of a chain: forces at sliders i and j elongate the bars up to the nearer slider. Normal forces are
+    given."""
     case = parse_case(GENERATORS["chain"](5, name="t"))
     truss = case.resolve()
     rigidity = truss.links.young_modulus_Pa * truss.links.cross_section_area_m2
@@ -72,7 +73,7 @@ def test_matrix_of_a_chain_is_its_compliance() -> None:
 
 
 def test_siconos_solves_them() -> None:
-    """Siconos, which FCLIB's collection was made with, solves them too, if it is installed."""
+    """If Siconos, with which the FCLIB collection was made, is installed, it also solves these problems."""
     numerics = pytest.importorskip("siconos.numerics")
     for one in problems("ring", 4, number=4):
         problem = one.problem

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Comparison of cases in CalculiX, which shares no code with this project, and the reduced model."""
+"""Comparison of CalculiX and the reduced model. CalculiX shares no code with this project."""
 from __future__ import annotations
 
 import shutil
@@ -120,7 +120,7 @@ def test_the_deck_of_a_truss_is_imported_again(what: str, statejump: Callable[..
 
 
 def with_play() -> dict[str, Any]:
-    """Return the square with a slider between two stops within a diagonal, heated, returned, then cooled."""
+    """Return the square with a slider between two stops in one diagonal. It is heated, returns, and is then cooled."""
     data = truss()
     data["node"].append({"name": "J", "position_m": data["node"][2]["position_m"]})
     data["link"][3]["nodes"] = ["A", "J"]
@@ -133,7 +133,7 @@ def with_play() -> dict[str, Any]:
 @with_calculix
 @pytest.mark.parametrize("what", ["chain", "stops"])
 def test_sliders_slip_in_both_alike(what: str) -> None:
-    """Elastic sticking and strains of the bricks cause differences of a few millionths."""
+    """Slipping sliders agree to some millionths, because of elastic sticking and strains of CalculiX's bricks."""
     case = sj.load("cases/trusses/chain_10.toml" if what == "chain" else with_play())
     rows = {row.name: row for row in calculix.answer(case.definition).rows}
     moved = rows["largest_displacement_sliding"]

@@ -39,7 +39,7 @@ def test_misspelt_command_is_told_the_nearest(statejump: Callable[..., Any], wor
 
 
 def test_another_python_is_told_which_one_it_takes() -> None:
-    """As if another version imported it; one sentence has the name of the interpreter and both versions."""
+    """The import fails as in another Python version; one sentence names the interpreter needed and both versions."""
     code = ("import sys; sys.version_info = (3, 99, 0, 'final', 0)\n"
             "try:\n    import statejump\nexcept ImportError as error:\n    print(error)")
     done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(BUILT)},
@@ -64,7 +64,7 @@ def test_manual_and_completion_are_of_the_commands(tmp_path: Path) -> None:
 
 
 def test_demo_refuses_other_models_in_one_sentence(statejump: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    """``make demo`` builds only the first of two modules of the engine; here the second is hidden."""
+    """``make demo`` builds only the first of the engine's two modules; here the second module is hidden."""
     monkeypatch.setitem(sys.modules, "statejump._engine_more", None)
     assert statejump("reduced", "table1").status == 0
     refused = statejump("reduced", "umbrella_damped")

@@ -22,7 +22,7 @@ from statejump.identification.models import MODELS, parts_of
 
 
 def block_by_block(path: np.ndarray, joint: dict[str, float], block: float = 0.0) -> np.ndarray:
-    """Return the force of a slide between rigid stops, step by step; the block moves only as far as necessary."""
+    """Return the force of a slider between rigid stops, step by step; the block moves only as far as necessary."""
     stiffness, spring = joint["stiffness"], joint["preload_stiffness"]
     forces = []
     for there in path:
@@ -34,7 +34,7 @@ def block_by_block(path: np.ndarray, joint: dict[str, float], block: float = 0.0
 
 
 def test_slide_between_stops_is_that_of_small_steps() -> None:
-    """A random path with all crossings and memory; the difference is rounding of some hundred sums."""
+    """A random path with all sequences of slip and stops; the difference is the rounding of some hundred sums."""
     path = np.concatenate([np.linspace(a, b, 40) for a, b in zip(
         *(lambda ends: (ends[:-1], ends[1:]))(np.random.default_rng(3).uniform(-1e-3, 1e-3, 60)))])
     joint = {name: JOINT[name] for name in MODELS["coulomb_clearance_spring"].parameters}
@@ -44,7 +44,7 @@ def test_slide_between_stops_is_that_of_small_steps() -> None:
 
 
 def resting(path: np.ndarray, joint: dict[str, float], block: float) -> np.ndarray:
-    """Return the force of a slide behind a spring with play, between soft stops, step by step: at every row bisection
+    """Return the force of a slider behind a spring with play, between soft stops, step by step. At every row bisection
     finds the position at which friction holds the block."""
     gap, slack = joint.get("play", 0.0) / 2, 1 - joint.get("play_ratio", 0.0)
 
@@ -71,7 +71,7 @@ def resting(path: np.ndarray, joint: dict[str, float], block: float) -> np.ndarr
 @pytest.mark.parametrize("model", ["coulomb_play", "coulomb_soft_play", "coulomb_soft_stops"])
 @pytest.mark.parametrize("start", [-1.0, 0.0, 0.4])
 def test_play_and_soft_stops_are_those_of_small_steps(model: str, start: float) -> None:
-    """For any friction in the first row; without play the preload needs one more row."""
+    """The force agrees with that of small steps for any friction in the first row."""
     path = np.interp(np.linspace(0, 9, 400), np.arange(10), 1e-3 * np.array([0, .2, -.1, .5, -.6, 1, -1, .3, -.2, 1]))
     values = {name: JOINT[name] for name in MODELS[model].parameters} | {"preload": 0.0}
     loop = read_loop({"displacement_m": path, "force_N": path})
@@ -95,7 +95,7 @@ def test_columns_of_other_sensors_are_left_out_by_name(tmp_path: Path, statejump
 
 
 def test_a_slide_may_slip_before_its_play_is_used_up() -> None:
-    """With 0.5 kN/mm within the play, friction of 150 N holds 0.3 mm of a play of 1 mm."""
+    """A play of 1 mm has a stiffness of 0.5 kN/mm, so a friction of 150 N is reached after 0.3 mm of it."""
     path = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 400))
     values = {"stiffness": 1e6, "friction": 150.0, "preload": 0.0, "play": 1e-3, "play_ratio": 0.5}
     found = MODELS["coulomb_soft_play"].answer(values, path, remembered(path, fresh=True))
@@ -104,8 +104,8 @@ def test_a_slide_may_slip_before_its_play_is_used_up() -> None:
 
 
 def test_a_play_that_is_not_empty_is_wider_than_an_empty_one() -> None:
-    """A play with 0.2 of the stiffness inside has the same displacement between forward and backward slip as an empty
-    play of 0.8 of its width, which a case can represent."""
+    """A soft play transmits 0.2 of the stiffness. Between forward and backward slip it has the same displacement as an
+    empty play of 0.8 of its width, which a case can represent."""
     found = sj.identify(measured("coulomb_soft_play", JOINT), start="cycled")
     assert found.model == "coulomb_soft_play"
     play = found.intervals["play"]
@@ -117,7 +117,7 @@ def test_a_play_that_is_not_empty_is_wider_than_an_empty_one() -> None:
 
 @pytest.mark.parametrize("fresh", [True, False])
 def test_partial_slip_is_that_of_the_kernel(fresh: bool) -> None:
-    """Memory of the kernel and Masing's rule share no code; the path has nested loops and closes them."""
+    """The kernel's load history and Masing's rule share no code; the path has closed nested loops."""
     contact = dict(effective_young_modulus_Pa=38.5e9, effective_shear_modulus_Pa=7.9e9, effective_radius_m=0.01,
                    friction_coefficient=0.3)
     corners = 1e-7 * np.array([0, 3, -1, 2, -1, 2, -2, 4, -5, 5, 0, 7, -7])  # gross slip from 5.7 on
@@ -133,8 +133,8 @@ def test_partial_slip_is_that_of_the_kernel(fresh: bool) -> None:
 
 
 def test_iwan_joint_is_a_sum_of_its_sliders() -> None:
-    """Sliders at 4000 midpoints of the density of the law: the error of the sum is 1/4000 squared, and that at its
-    end."""
+    """Sliders of equal stiffness at 4000 midpoints of the Iwan density, and one slider at its end. The error of their
+    sum is of order 1/4000²."""
     friction, stiffness, chi, beta = 300.0, 1e6, -0.5, 1.0
     last = friction * (1 + beta) / (stiffness * (beta + (chi + 1) / (chi + 2)))
     share = ((np.arange(4000) + 0.5) / 4000) ** (1 / (chi + 1))  # equal stiffness each
@@ -152,7 +152,8 @@ def test_iwan_joint_is_a_sum_of_its_sliders() -> None:
 
 @pytest.mark.parametrize("model", list(MODELS))
 def test_every_joint_is_known_again(model: str) -> None:
-    """BIC selects the joint among all; parameters are within 4 standard deviations, 1 in 16 000 beyond by chance."""
+    """BIC selects the correct joint among all models. Parameters are within 4 standard deviations, which chance exceeds
+    once in 16 000."""
     known = {**JOINT, "friction": 300.0, "iwan_exponent": -0.5, "iwan_ratio": 1.0}
     if model in ("coulomb_clearance", "coulomb_soft_stops", "coulomb_soft_stops_spring"):
         known["friction"] = 150.0
@@ -204,8 +205,8 @@ def test_partial_slip_extrapolates_and_says_so() -> None:
 
 @pytest.mark.parametrize("amplitude", [np.linspace(0.05, 1, 401), np.linspace(1, 0.05, 401)], ids=["growing", "shrinking"])
 def test_growing_and_shrinking_cycles_are_used_whole(amplitude: np.ndarray) -> None:
-    """From rest, as in test standards. The fit does not know this, so it also determines the friction of the first
-    row."""
+    """The cycles begin at rest, as in test standards. The fit does not use this, so it also determines the friction of
+    the first row."""
     path = 1.5e-3 * amplitude * np.sin(np.linspace(0, 14 * np.pi, 401))
     joint = {name: JOINT[name] for name in MODELS["coulomb_spring"].parameters} | {"preload": 0.0}
     loop = read_loop({"displacement_m": path, "force_N": path}, "fresh")
@@ -218,7 +219,7 @@ def test_growing_and_shrinking_cycles_are_used_whole(amplitude: np.ndarray) -> N
 
 
 def test_no_joint_fits_worse_than_one_that_it_contains() -> None:
-    """A stiff slide slips nearly everywhere; a search that starts with stops would not remove them by itself."""
+    """A stiff joint slips nearly all the time; a search that starts with stops would not remove them by itself."""
     fits = Fits(read_loop(measured("coulomb", {"stiffness": 1e7, "friction": 100.0, "preload": 0.0}), "fresh"))
     for model in MODELS.values():
         for part in parts_of(model.name):
@@ -233,8 +234,8 @@ def test_intervals_have_a_width_and_clearances_are_not_negative() -> None:
 
 
 def test_parameter_at_the_end_of_its_range_takes_others_along() -> None:
-    """Partial slip of a hundred sliders down to the softest: the sticking stiffness grows without bound as χ approaches
-    -1."""
+    """Partial slip of a hundred sliders: as the Iwan exponent χ approaches -1, the sticking stiffness grows without
+    bound."""
     loop = measured("iwan", {"stiffness": 1e9, "friction": 300.0, "iwan_exponent": -0.995, "iwan_ratio": 1e-3,
                              "preload": 0.0})
     found = sj.identify(loop, start="cycled", model="iwan")
@@ -245,7 +246,7 @@ def test_parameter_at_the_end_of_its_range_takes_others_along() -> None:
 
 
 def test_misfit_that_every_cycle_repeats_is_no_evidence() -> None:
-    """No joint has friction that grows along the path; the fit must not report stops instead."""
+    """Friction that grows along the path is in no joint model; the fit must not report stops instead."""
     path = 1e-3 * np.sin(np.linspace(0, 40 * np.pi, 2001))
     loop = read_loop({"displacement_m": path, "force_N": path}, "cycled")
     force = MODELS["coulomb"].answer({"stiffness": 1e6, "friction": 100.0, "preload": 0.0}, path, loop.memory)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Intervals of identified joints: how often they contain the true values, over repetitions with other noise."""
+"""Confidence intervals of identified joints: how often they contain the true values, over repetitions with new noise.
+"""
 from __future__ import annotations
 
 import numpy as np
@@ -13,9 +14,9 @@ from statejump.identification.models import MODELS
 
 
 def test_intervals_cover() -> None:
-    """20 repetitions of six parameters at 95 %: 114 of 120 are expected, sd 2.4 (4 with correlated parameters).
-    Intervals of half the width would contain 81. docs/validation/identification.md has 500 repetitions of each
-    joint."""
+    """20 repetitions of six intervals at 95 %: 114 of 120 should contain the true value, sd 2.4 (4 with correlation).
+    Intervals of half the width would contain 81. docs/validation/identification.md has 500 repetitions of each joint.
+    """
     inside = 0
     for seed in range(20):
         found = sj.identify(measured("coulomb_clearance_spring", JOINT, seed=seed), start="cycled",
@@ -32,8 +33,8 @@ def correlated(count: int, correlation: float, seed: int) -> np.ndarray:
 
 
 def test_intervals_cover_with_correlated_noise() -> None:
-    """20 repetitions of four parameters at 95 %: 76 of 80 are expected, sd 2. If 600 rows with correlation 0.9 counted
-    as independent, intervals would be a fourth as wide and contain half of the values."""
+    """20 repetitions of four intervals at 95 %: 76 of 80 should contain the true value, sd 2. If 600 rows with a noise
+    correlation of 0.9 counted as independent, intervals would be a fourth as wide and contain half of the values."""
     path = 1e-3 * np.sin(np.linspace(0, 8 * np.pi, 600))
     joint = {name: JOINT[name] for name in MODELS["coulomb_play"].parameters}
     loop = read_loop({"displacement_m": path, "force_N": path}, "cycled")

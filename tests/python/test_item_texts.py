@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of texts: every text is stored once, as bytes with a number."""
+"""Text columns of tables: every distinct text is stored once, as numbered bytes."""
 from __future__ import annotations
 
 import random

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Script and data of a DEM run in a folder: the printed command repeats the run, bit for bit."""
+"""Script and input of a DEM run, kept in a folder: the printed command repeats the run bit for bit."""
 from __future__ import annotations
 
 import os

@@ -64,7 +64,8 @@ def test_traits(kind: str, name: str, traits: set[str], parameters: tuple[str, .
 
 
 def test_parameters_are_those_of_the_cases() -> None:
-    """Unit, lower end and default of keys of a case are those of the law; the upper end may be lower."""
+    """Unit, lower limit and default of a case's keys equal those of the law; the upper limit of the case may be lower.
+    """
     keys = {"restitution": "restitution", "smallest_impact_speed": "smallest_impact_speed_m_per_s",
             "v0": "friction_v0_m_per_s", "v1": "friction_v1_m_per_s", "contact_length": "contact_length_m",
             "friction_coefficient": "friction_coefficient"}
@@ -101,7 +102,7 @@ def test_hertz(name: str, radius: float) -> None:
 
 @pytest.mark.parametrize("name, shift", [("johnson", -1.0), ("esdu_78035", 1.0)])
 def test_logarithmic_line_contact(name: str, shift: float) -> None:
-    """The laws give force from depth; the literature gives depth from force."""
+    """The laws compute force from depth; the formula of the literature gives depth from force."""
     limit = _engine.largest_depth_m(name, R1, R2)
     assert limit == pytest.approx(4 * CLEARANCE * np.exp(shift - 1), rel=1e-12)
     depth = np.geomspace(1e-9, limit * (1 - 1e-6), 50)
@@ -161,7 +162,7 @@ def test_wrong_use() -> None:
     ("flores", 1.6 * 0.2 / 0.8),
 ])
 def test_impact(name: str, ratio: float) -> None:
-    """a - ln(1 + a) = -a e' - ln(1 - a e') for any elastic law; a = chi/K times the speed."""
+    """For any elastic law e' solves a - ln(1 + a) = -a e' - ln(1 - a e'), where a is chi/K times the speed."""
     joint = curves.paper_joint()
     assert _engine.damping_ratio_s_per_m(name, 0.8, 0.1) * 0.1 == pytest.approx(ratio, rel=1e-14)
     found = curves.impact(name, joint)

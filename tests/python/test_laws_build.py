@@ -74,7 +74,7 @@ def test_compiles_in_seconds(folder: Path, tmp_path: Path) -> None:
 
 
 def test_same_text_same_bits(folder: Path) -> None:
-    """A user law in a case: a copy of hunt_crossley moves the rib exactly as the original, bit for bit."""
+    """A user's copy of the law hunt_crossley moves the rib exactly as the original, bit for bit."""
     base = {"joint.restitution": 0.7}
     own, twin = (told(rib(folder, "umbrella_damped.toml", {**base, "joint.dissipation_law": name}))
                  for name in ("hunt_crossley", "twin"))
@@ -85,7 +85,7 @@ def test_same_text_same_bits(folder: Path) -> None:
 
 
 def test_new_laws_in_a_case(folder: Path) -> None:
-    """A normal and a friction law that the project does not have: contact occurs, and the energy account closes."""
+    """The case has a user's normal and friction laws: contact occurs, and the energy account closes."""
     found = told(rib(folder, "umbrella_damped.toml", {"joint.friction_law": "smooth", "joint.normal_law": "hertz_internal"}))
     lost = np.array(found["columns"]["friction_dissipation_J"])[-1]
     assert found["contacts"] > 0 and lost > 0
@@ -94,7 +94,7 @@ def test_new_laws_in_a_case(folder: Path) -> None:
 
 
 def test_traits_decide_what_a_case_may_ask(folder: Path, tmp_path: Path) -> None:
-    """The adaptive method accepts laws without memory; a loaded start with a creeping law is only possible at 0."""
+    """The adaptive method accepts laws without memory. A law that creeps under load cannot hold a loaded start."""
     assert told(rib(folder, "umbrella_damped.toml", {
         "joint.friction_law": "smooth", "reduced.method": "adaptive"}))["contacts"] > 0
     text = (REPOSITORY / "cases" / "umbrella_hold.toml").read_text()
@@ -115,7 +115,7 @@ def test_listed(folder: Path, tmp_path: Path) -> None:
 
 
 def test_same_number_in_yade(yade: str, folder: Path) -> None:
-    """Force of the cubic law: kernel through the engine, kernel through the plugin, and by hand."""
+    """Force of a user's cubic law: by the kernel in the engine, by the kernel in the plugin, and by hand."""
     script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
     done = ended([yade, "-n", "-x", script], STATEJUMP_LAWS=str(folder),
                  PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
@@ -226,7 +226,7 @@ def test_hash_is_that_of_the_build(tmp_path: Path) -> None:
 
 
 def test_other_kernel_and_two_of_one_name(folder: Path, tmp_path: Path, statejump, cases: Path) -> None:
-    """Unusable laws are known by name: a case that uses one reports the reason, other cases are not affected."""
+    """Unusable laws keep their names: a case that uses such a law reports the reason, other cases are not affected."""
     old = tmp_path / "old"
     old.mkdir()
     made = build.compile_law(build.find_compiler(), TOYS / "smooth.hpp", "0" * 64, old)
@@ -258,7 +258,7 @@ def test_object_that_is_no_law(statejump, tmp_path: Path) -> None:
 
 
 def test_own_folder(statejump, tmp_path: Path) -> None:
-    """Without --folder the law is written to the folder that every program searches."""
+    """Without --folder the law is written to the folder that every program searches by default."""
     environment = {"XDG_DATA_HOME": str(tmp_path / "data"), "STATEJUMP_LAWS": ""}
     outcome = statejump("laws", "build", TOYS / "twin.hpp", **environment)
     target = tmp_path / "data" / "statejump" / "laws" / "dissipation_twin.so"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One contact along a path, from Python and from the command line."""
+"""Laws of one contact along a displacement path, from Python and from the command line."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -56,7 +56,7 @@ def test_in_the_plane() -> None:
 
 @pytest.mark.parametrize("kind", ["friction", "normal", "dissipation"])
 def test_every_law(kind: str) -> None:
-    """Load, slide, open, load: no law has a force while the contact is open."""
+    """The path is load, slide, open, load: no law has a force while the contact is open."""
     path = {"time_s": np.arange(5) * 1e-3, "slide_m": [0, 1e-7, 1e-7, 0, 1e-7],
             "penetration_depth_m": [1e-7, 1e-6, -1e-6, 1e-6, 1e-6]}
     for law in laws.catalogue(kind):

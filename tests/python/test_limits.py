@@ -37,8 +37,8 @@ def with_cycles(cases: Path, folder: Path, cycles: int) -> Path:
 
 
 def test_many_cycles_need_little_memory(cases: Path, tmp_path: Path) -> None:
-    """Both runs keep the first and the last ten cycles. A whole path had 4.5 kB of segments and events per cycle: 20
-    000 cycles took 89 MB more than 200. Now a double per cycle remains, 0.16 MB. 20 MB allow for variation between
+    """Both runs keep the first and the last ten cycles. An earlier version stored 4.5 kB per cycle: 20 000 cycles took
+    89 MB more than 200. Now one number per cycle remains, 0.16 MB. The limit of 20 MB allows for variation between
     processes."""
     few = peak_bytes(tmp_path, "reduced", with_cycles(cases, tmp_path, 200))
     many = peak_bytes(tmp_path, "reduced", with_cycles(cases, tmp_path, 20_000), "--force")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values that are not finite: a verdict with one fails and names it, and nothing is dropped silently."""
+"""Values that are not finite: a verdict on such a value fails and names it, and no value is dropped silently."""
 from __future__ import annotations
 
 import math
@@ -57,7 +57,7 @@ def case_of(cases: Path, name: str) -> Case:
 
 
 def as_dem(case: Case, run: Run) -> Run:
-    """The reduced run in the form of a DEM run; energies that only the DEM has are zero."""
+    """The reduced run in the form of a DEM run; energies that only the DEM records are zero."""
     zero = replace(next(iter(run.energy.values())), values=np.zeros(len(run)))
     names = {"elastic_energy_J", "kinetic_energy_J", "contact_energy_J", "preload_energy_J", "damping_dissipation_J",
              "friction_dissipation_J", "thermal_work_J", "external_work_J"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperatures over an orbit: their equation, closed forms, and the file for cases."""
+"""Temperatures over an orbit: differential equation, closed forms, and the file for cases."""
 from __future__ import annotations
 
 import tomllib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The door through which files are written: whole or not at all, together or not at all, one run at a time."""
+"""A file, or a group of files, is written completely or not at all; only one run at a time writes into a folder."""
 from __future__ import annotations
 
 import csv
@@ -120,7 +120,7 @@ def test_a_folder_in_the_place_of_a_file(tmp_path: Path) -> None:
 
 
 def test_a_kill_between_two_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What was decided is finished by the next run in the folder, what was not goes."""
+    """The next run in the folder completes files whose publication has begun, and removes other temporary files."""
     moved = os.replace
     case = tmp_path / "case"
 
@@ -183,7 +183,7 @@ def test_a_killed_run_lets_go(tmp_path: Path) -> None:
 
 
 def test_two_commands_at_once(cases: Path, tmp_path: Path) -> None:
-    """Both wait for each other where they are told to, and both are done."""
+    """With --wait, commands that write the same results wait for each other and succeed."""
     runs = [subprocess.Popen([COMMAND, "reduced", cases / "table1.toml", "--wait"], cwd=tmp_path, text=True,
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) for _ in range(3)]
     for run in runs:
@@ -201,7 +201,7 @@ def test_space_is_asked_for(tmp_path: Path) -> None:
 
 @pytest.fixture
 def bound(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Run the command as somebody whom permissions bind: the superuser gives up what sets him above them."""
+    """Run the command without the superuser's right to ignore file permissions."""
     before: list[str] = []
     if os.geteuid() == 0:
         before = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all"]
@@ -232,7 +232,7 @@ def test_read_only_folder(bound, statejump, cases: Path, tmp_path: Path) -> None
 
 
 def test_what_may_not_be_read(bound, cases: Path, tmp_path: Path) -> None:
-    """A file, and one in a folder that may not be searched."""
+    """Unreadable files, and files in unsearchable folders, are reported in one line each."""
     (tmp_path / "case.toml").write_text((cases / "table1.toml").read_text())
     (tmp_path / "case.toml").chmod(0)
     (tmp_path / "locked").mkdir(mode=0)

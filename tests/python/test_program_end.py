@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A temperature program that does not end at the reference temperature has no state jump there: a return is added and
-reported, or the displacement is reported under another name."""
+"""A temperature program that does not end at the reference temperature has no state jump at its end. Either a return is
+added and reported, or the displacement at the end is reported under another name."""
 from __future__ import annotations
 
 from math import isnan
@@ -67,7 +67,8 @@ def test_return_is_added_and_reported(name: str, jump: str, there: str) -> None:
 
 
 def test_displacement_at_the_end_is_that_of_the_closed_form() -> None:
-    """Table 1's bar slides to and fro: x = α ΔT l - f l/(E A) while it slides against cooling."""
+    """The bar of the paper's Table 1 slides back and forth: x = α ΔT l - f l/(E A) while it slides and the temperature
+    falls."""
     case = sj.load("table1").changed(TABLE)
     link = case.definition.link
     expands = link.thermal_expansion_per_K * link.stress_free_length_m
@@ -104,7 +105,7 @@ def test_cycles_return_each() -> None:
 
 
 def test_programs_of_a_truss_return_together() -> None:
-    """The common program ends at 0, a further one does not: all get the return."""
+    """The common program ends at 0 K, a second program does not; the return is added to both."""
     made = chain(table_temperature_change_K=[0.0, 70.0, 50.0, 0.0])
     made["program"] = [{"name": "shade", "shape": "table", "table_time_s": ROWS[0], "table_temperature_change_K": ROWS[1]}]
     made["link"][0]["program"] = "shade"
@@ -207,7 +208,7 @@ def test_yade_gets_the_return() -> None:
 
 
 def test_table_of_zeros(statejump, edited, tmp_path: Path) -> None:
-    """Nothing happens in either model: zero beside zero passes, and other commands say so."""
+    """With zero temperature change both models report zero and pass the comparison; 'fe' refuses the case."""
     program = ('shape = "half_sine"', 'shape = "table"\ntable_time_s = [0, 0.1, 0.2]\ntable_temperature_change_K = [0, 0, 0]')
     lines = [line for line in edited(program).read_text().splitlines()
              if not line.startswith(("temperature_change_max_K", "period_s"))]

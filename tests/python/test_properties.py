@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Properties that hold of every case and every result file, over cases and files that nobody has thought of."""
+"""Properties of every case and every result file, tested on randomly generated cases and files."""
 from __future__ import annotations
 
 import json
@@ -43,7 +43,7 @@ def numbers_of(name: str) -> list[tuple[str, Any]]:
 
 @st.composite
 def changes(draw: Any) -> tuple[str, dict[str, Any]]:
-    """A shipped case, and other values of up to three of its numbers: near, far, and none at all."""
+    """A shipped case with up to three changed numbers: near the original, far from it, or not finite."""
     name = draw(st.sampled_from(SHIPPED))
     found = {}
     for key, value in draw(st.lists(st.sampled_from(numbers_of(name)), min_size=1, max_size=3)):
@@ -59,7 +59,7 @@ def same(first: Any, second: Any) -> bool:
 @OFTEN
 @given(changes())
 def test_case_survives_json(change: tuple[str, dict[str, Any]]) -> None:
-    """A case that is allowed is the same case after case → dict → JSON → dict → case, and nothing of it moves."""
+    """A valid case is unchanged by the conversions case → dict → JSON → dict → case."""
     name, values = change
     try:
         case = shipped(name).changed(values)
@@ -105,7 +105,7 @@ KNOWN = st.floats(allow_nan=False)  # of a row, where a file writes NaN for none
 
 @st.composite
 def runs(draw: Any, base: Run) -> Run:
-    """A run of the shape of another one, with whatever numbers, events and summary."""
+    """A run with the array shapes of a given run, and arbitrary numbers, events and summary."""
     groups = {group: dict(getattr(base, group)) for group in ("history", "energy", "links", "contacts")}
     places = [(group, name) for group, columns in groups.items() for name, column in columns.items() if not column.labels]
     for group, name in draw(st.lists(st.sampled_from(places), max_size=3)):

@@ -15,7 +15,8 @@ from statejump.core.errors import FailedRun
 
 
 def test_paths_of_a_loaded_rib() -> None:
-    """Both paths slip when heated and when cooled; elastic links change the jump by their strain, some 1e-4 of it."""
+    """Both paths slip during heating and during cooling. Elastic links change the jump by the relative strain, about
+    1e-4."""
     found = sj.load("umbrella_bias").quasi_static()
     for links in ("rigid", "elastic"):
         assert found.events(links)["motion"].tolist()[:4] == ["roll", "slip", "roll", "slip"]

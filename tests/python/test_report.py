@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""statejump report: the page needs nothing beside it, is of bounded size, and says what it shows."""
+"""statejump report: the page needs no other files, has a bounded size, and explains what it shows."""
 from __future__ import annotations
 
 import base64
@@ -163,7 +163,7 @@ def test_curves_on_the_page_are_those_of_the_file(statejump: Callable[..., Outco
 
 
 def test_clearance_is_relative_and_in_full(statejump: Callable[..., Outcome], results: Path) -> None:
-    """The journal is given against its bearing: as absolute places the clearance would be rounded."""
+    """The position of the journal is stored relative to its bearing; absolute positions would round the clearance."""
     found, _ = written(statejump, results / "umbrella_damped")
     run = found.data["runs"][0]
     part = {part["type"]: part for part in run["scene"]["parts"]}
@@ -323,7 +323,7 @@ def test_sweep_beside_a_run(statejump: Callable[..., Outcome], cases: Path) -> N
 
 
 def _truss(joints: int, samples: int) -> Result:
-    """A chain of links with a clearance joint each, all going their own way."""
+    """A chain of links with a clearance joint each; every journal moves differently."""
     time = np.linspace(0.0, 1.0, samples)
     change = 100 * np.sin(np.pi * time)
     names = [f"joint_{place}" for place in range(joints)]
@@ -422,7 +422,7 @@ UNIT_WORDS = {word for ending in units.ENDINGS for word in ending.split("_") if 
 
 @pytest.mark.parametrize("name", names())
 def test_no_unit_rests_in_a_label(name: str) -> None:
-    """Keys of the case, columns and tables: the words of a key end before its unit, whichever it is."""
+    """Labels of keys, columns and tables contain no unit: the unit at the end of a key is removed."""
     found, case = labels.of_kind(name), kind(name).Case
     keys = [path.rpartition(".")[2] for path in keys_of(case)]
     tables = [column for _, columns in layout.TABLES.values() for column in columns]

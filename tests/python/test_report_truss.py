@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of a truss: jumps, ranking of joints, sensitivities, and what it says without answers."""
+"""Report page of a truss: jumps, ranking of joints, sensitivities; also without results of `truss answers`."""
 from __future__ import annotations
 
 import subprocess
@@ -36,7 +36,7 @@ def made(root: Path, *arguments: object) -> None:
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Answers about a plane and a spatial truss, the path alone of others."""
+    """Results of `truss answers` for a planar and a spatial truss; for others only the quasi-static path."""
     root = tmp_path_factory.mktemp("trusses")
     made(root, "truss", "answers", TRUSSES / "mast_6.toml", "--cycles", 3)
     made(root, "truss", "answers", TRUSSES / "umbrella_8.toml", "--no-sensitivity")
@@ -149,7 +149,7 @@ def test_interrupted_run_shows_what_there_is(results: Path) -> None:
 
 
 def test_replay_without_clearance_magnifies_the_way(results: Path) -> None:
-    """Blocks without stops have no clearance: the way of the chain's end, 10 % of its length at most, decides."""
+    """Blocks without stops have no clearance: the chain's end is magnified to at most 10 % of the chain's length."""
     scene = Document(read(results / "chain_10" / "reduced.h5"), "x.h5", "run1", 1e6).payload()["scene"]
     # 5 m of bars between hot and half slipped out: 2.34e-3 of that at most, 42 times in a tenth.
     assert scene["clearance_m"] == 0 and scene["magnification"] == scene["magnification_of_deformation"] >= 20

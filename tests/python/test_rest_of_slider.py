@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where friction holds the block of Table 1: the closed form, and what runs of the reduced model show of it."""
+"""Positions in which friction holds the block of the paper's Table 1: closed form, and what the reduced model reports
+about them."""
 from __future__ import annotations
 
 from pathlib import Path

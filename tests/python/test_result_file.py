@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The result file: its layout, what it holds, that it repeats, what is made of it, what is wrong with it."""
+"""The result file: layout, content, reproducibility, conversions, and messages for invalid files."""
 from __future__ import annotations
 
 import csv
@@ -80,7 +80,7 @@ KINDS = pytest.mark.parametrize("name", SHORT)
 
 
 def places(file: h5py.File) -> dict[str, Any]:
-    """Every group, data set and attribute of a group by its place."""
+    """Every group, data set and group attribute, by its path in the file."""
     found: dict[str, Any] = {f"/@{key}": value for key, value in file.attrs.items()}
 
     def add(name: str, item: Any) -> None:
@@ -449,7 +449,7 @@ def test_file_cut_anywhere_is_refused(compared, tmp_path: Path) -> None:
 
 
 def test_random_bytes_never_reach_the_library(compared, tmp_path: Path) -> None:
-    """Whatever is changed in a file, wherever: it is refused before HDF5 takes the bytes for lengths and addresses."""
+    """A file with any changed bytes is refused before HDF5 uses the bytes as lengths and addresses."""
     whole = (compared("table1") / "comparison.h5").read_bytes()
     rng, path = np.random.default_rng(1), tmp_path / "random.h5"
     for count in (1, 1, 1, 3, 10, 100) * 20:
@@ -466,7 +466,7 @@ def test_random_bytes_never_reach_the_library(compared, tmp_path: Path) -> None:
 
 
 def test_other_programs_read_the_file(compared) -> None:
-    """The checksum stands in the user block that HDF5 leaves to programs."""
+    """h5py opens the file: its checksum is in the user block, which HDF5 reserves for applications."""
     with h5py.File(compared("table1") / "comparison.h5") as file:
         assert file.userblock_size == 512 and file.attrs["format"] == layout.FORMAT
 
@@ -578,7 +578,7 @@ def test_other_cases_are_not_comparable(compared, tmp_path: Path) -> None:
 
 
 def truss_like() -> Result:
-    """A result of many items that no kind of case makes: nodes, links, a mesh, an external force."""
+    """A synthetic result with many items that no kind of case produces: nodes, links, a mesh, an external force."""
     time = np.linspace(0, 2, 5)
     nodes = np.zeros((5, 3, 3))
     nodes[:, :, 0] = [0, 1, 2]

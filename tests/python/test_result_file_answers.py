@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers about a truss in its result file: layout, what comes back, what the commands make of it."""
+"""Results of `truss answers` in the result file: layout, values read back, and use by the commands."""
 from __future__ import annotations
 
 import csv
@@ -25,7 +25,7 @@ CASE = REPOSITORY / "cases" / "trusses" / "umbrella_8.toml"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Results folder of ``truss answers``, two cycles of a truss with a reflector."""
+    """Results folder of ``truss answers`` for two cycles of a truss with a reflector."""
     root = tmp_path_factory.mktemp("answers")
     (root / "results" / "umbrella_8").mkdir(parents=True)
     (root / "results" / "umbrella_8" / "reduced_history.csv").write_text("of another run\n")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the state jump of the rib: the quasi-static path of a loaded joint, statistics of a free one."""
+"""Control of the state jump of the rib: by the quasi-static path if the joint is loaded, else by ensemble statistics.
+"""
 from __future__ import annotations
 
 from math import inf, nan
@@ -25,7 +26,7 @@ def loaded(cases: Path):
 
 @pytest.fixture
 def free(cases: Path):
-    """The unloaded rib with steps that are long but stable: only the bookkeeping is tested."""
+    """The unloaded rib with long but stable time steps; tests use its counts and tables, not its accuracy."""
     case = load_case(cases / "umbrella.toml")
     return changed(case, {"ensemble.reduced_steps_per_cycle": 20000, "output.samples_per_cycle": 200})
 
@@ -156,8 +157,8 @@ def test_smallest_spring_brackets_and_says_what_fails_beyond() -> None:
 
 
 def test_recommended_spring_passes_on_both_ensembles_and_a_smaller_one_does_not(free, monkeypatch) -> None:
-    """Statistics made up: passes from 0.02 on the ensemble, by its quantile from 0.05 on more runs
-    from other starts, by its bound from 0.2."""
+    """Made-up statistics: springs pass from 0.02 on in the ensemble, and with more runs from other starts from 0.05 on
+    by the quantile and from 0.2 on by the upper bound."""
 
     def measure(case, runs, progress=None) -> dict[str, float]:
         spring, other = case.torsion_spring.stiffness_N_m_per_rad, case.ensemble.seed != free.ensemble.seed

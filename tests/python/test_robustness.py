@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rarer ways to go wrong: odd values, odd YADEs, signals, both stops in one cycle."""
+"""Rare errors: unusual values, unusual installations of YADE, signals, both stops reached in one cycle."""
 from __future__ import annotations
 
 import os
@@ -97,7 +97,7 @@ def test_whole_number_beyond_floating_point_in_a_campaign(cases: Path, tmp_path:
 
 
 def test_damaged_files_never_end_in_another_error(cases: Path) -> None:
-    """Whatever stands in a file: the case loads and solves, or one StatejumpError says why not."""
+    """A file with any damage either loads and solves, or a StatejumpError explains in one sentence why not."""
     text = (cases / "table1.toml").read_text()
     original = tomllib.loads(text)
     values = [0, 1, -1, 1e-300, 1e300, -1e300, float("nan"), float("inf"), HUGE, True, "", "x", [], [1], {},
@@ -186,7 +186,7 @@ def test_wrong_python_has_status_2() -> None:
 
 
 def test_stop_left_is_the_one_reached_first(cases: Path) -> None:
-    """A sine reaches both stops in one cycle; both models must name the same one."""
+    """A sine program reaches both stops in one cycle; both models must report the stop reached first."""
     case = load(cases / "table1.toml").changed({"thermal.shape": "sine"})
     run = case.reduced()
     columns = run.flat()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The published JSON Schemas: current, right for every case file, wrong for each kind of mistake."""
+"""Published JSON Schemas: they are up to date, accept every case file, and reject each kind of mistake."""
 from __future__ import annotations
 
 import json
@@ -36,7 +36,7 @@ def name_of(data: dict[str, Any]) -> str:
 
 
 def validator(name: str) -> jsonschema.Draft7Validator:
-    """A validator of a published file, which finds the files beside it that it refers to."""
+    """A validator of a published schema file, which resolves references to the other schema files."""
     found = published(name)
     beside = {(PUBLISHED / schema.file_name(other)).as_uri(): published(other) for other in schema.names()}
     resolver = jsonschema.RefResolver((PUBLISHED / schema.file_name(name)).as_uri(), found, store=beside)
@@ -84,7 +84,7 @@ def test_editors_find_the_schema_of_every_case_file(path: Path) -> None:
 
 @pytest.mark.parametrize("kind", kinds.names())
 def test_every_key_has_its_unit_and_range(kind: str) -> None:
-    """Each bound of each definition is found again in the schema, one by one."""
+    """Every bound in a definition of the package is in the published schema."""
     sections, bounds_seen = published(kind)["properties"], 0
     for name, attribute in fields_of(kinds.kind(kind).Case).items():
         model = section_of(attribute) or tables_of(attribute)
@@ -169,7 +169,7 @@ def test_mistakes_of_the_other_files(mistake: str, tmp_path: Path) -> None:
 
 
 def test_a_title_may_hold_what_is_no_control_character() -> None:
-    """A space that does not break is not printable to Python, and harmless."""
+    """A title may contain a no-break space, which is no control character, though not printable to Python."""
     document = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8"))
     document["case"]["title"] = "0.1\N{NO-BREAK SPACE}mm of play"
     assert parse_case(document).case.title == document["case"]["title"]

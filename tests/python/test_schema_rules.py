@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What case files are made of, on a file that is made up: every rule at its ends, with its code and fields."""
+"""Rules of case files, on a made-up kind: every rule at its limits, with its error code and fields."""
 from __future__ import annotations
 
 import copy

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stops of a stiffness of their own and play in series with friction: in the closed form, on trusses, in motion, and
-from a measured loop into a case. The reference moves a block step by step, by halving."""
+"""Soft stops (stops with a stiffness), and play in series with friction: in the closed form, in trusses, in motion, and
+as a case made from a measured loop. The reference solution moves a block step by step, by bisection."""
 from __future__ import annotations
 
 import tomllib
@@ -34,12 +34,13 @@ TRUSS: dict[str, Any] = {
 
 
 def truss(reduced: dict[str, Any] | None = None, **slider: Any) -> sj.Case:
-    """Return the bar on a slider, with other keys of the slider."""
+    """Return the bar on a slider as a truss, with changed keys of the slider."""
     return sj.load(TRUSS | {"slider": [TRUSS["slider"][0] | slider], "reduced": reduced or {}})
 
 
 def states(case: sj.Case) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return times, slides and forces of the slider where the solver was; samples in between are interpolated."""
+    """Return times, slides and forces of the slider at the solver's own states; samples between them are interpolated.
+    """
     found = solve.path(case.definition.resolve()).states
     return found["time_s"], found["slide_m"][:, 0], found["slider_force_N"][:, 0]
 
@@ -56,7 +57,7 @@ def spring_slider(**joint: Any) -> sj.Case:
 
 
 def load_N(there: float, change_K: float, joint: Any) -> float:
-    """Return what friction has to hold of the block, towards the stop on the plus side."""
+    """Return the force on the block that friction has to hold, positive towards the plus stop."""
     strain = EXPANSION * change_K
     bar = RIGIDITY / (LENGTH * (1 + strain)) * (LENGTH * strain - there)
     stop = joint.stop_stiffness_N_per_m * (there - np.clip(there, -MINUS, PLUS))
@@ -64,7 +65,7 @@ def load_N(there: float, change_K: float, joint: Any) -> float:
 
 
 def moved(change_K: np.ndarray, joint: Any) -> np.ndarray:
-    """Return where the block is: at every temperature it moves, by halving, until friction holds it."""
+    """Return the positions of the block: at every temperature bisection moves it until friction holds it."""
     x, found = 0.0, []
     for change in change_K:
         for sign in (1.0, -1.0):
@@ -80,7 +81,8 @@ def moved(change_K: np.ndarray, joint: Any) -> np.ndarray:
 
 
 def moved_with_play(change_K: np.ndarray, joint: Any) -> np.ndarray:
-    """Return where the block is, by halving: at every temperature the middle of the play moves until friction holds."""
+    """Return the positions of the block: at every temperature bisection moves the middle of the play until friction
+    holds."""
     def balance(held: float, change: float) -> float:
         low, high = -1.0, 1.0
         for _ in range(60):
@@ -105,7 +107,7 @@ def moved_with_play(change_K: np.ndarray, joint: Any) -> np.ndarray:
 @pytest.mark.parametrize("preload", [{}, {"preload_stiffness_N_per_m": 2e5, "preload_force_N": 80.0},
                                      {"preload_force_N": -700.0}])
 def test_closed_form_is_that_of_small_steps(preload: dict[str, float]) -> None:
-    """From the start as well, where the last preload presses the block on the stop."""
+    """With the last preload, the block is pressed on the stop already at the start."""
     case = spring_slider(stop_stiffness_N_per_m=STOP, **preload)
     run = case.reduced()
     # Halving leaves 1 m/2^60.
@@ -139,7 +141,7 @@ def test_closed_form_with_play_is_that_of_small_steps(joint: dict[str, float]) -
     {"play_m": 4e-4}, {"play_m": 4e-4, "stop_stiffness_N_per_m": STOP}, {"play_m": 4e-4, "preload_force_N": 300.0},
 ])
 def test_play_of_a_truss_is_that_of_the_closed_form(keys: dict[str, float]) -> None:
-    """A play closes on the pad of a truss, which gives by 30 N over its k_t, 1.5e-6 m, on either side of it."""
+    """The play acts in series with the pad of the truss, which yields by 30 N over its stiffness k_t, 1.5e-6 m."""
     joint = dict(keys)
     load = joint.pop("preload_force_N", 0.0)
     nodes = [TRUSS["node"][0], TRUSS["node"][1] | {"force_N": [-load, 0.0]}]
@@ -160,8 +162,8 @@ def test_play_without_friction_is_refused() -> None:
     {"play_m": 2e-4, "preload_stiffness_N_per_m": 2e5, "preload_force_N": 200.0},
 ])
 def test_dem_of_a_spring_slider_with_play_is_the_closed_form(keys: dict[str, float]) -> None:
-    """Within the tolerances of `compare`: of stops in the play, away from it and of their own stiffness, of a start that
-    friction holds below its limit and at it."""
+    """The models agree within the tolerances of `compare`. Cases: soft stops inside and outside the play, and starts
+    with friction below and at its limit."""
     away = {} if "stop_stiffness_N_per_m" in keys else {"clearance_minus_m": 5e-3, "clearance_plus_m": 5e-3}
     case = spring_slider(**({"play_m": 4e-4} | away | keys))
     found = sj.compare(case.reduced(), case.dem())
@@ -179,7 +181,7 @@ def test_rest_sets_end_where_friction_does() -> None:
 
 
 def test_stiff_stop_is_the_rigid_one() -> None:
-    """The stop gives by its force over its stiffness, 1e-9 m: so much the block and the jump differ."""
+    """A stiff stop yields by its force over its stiffness, 1e-9 m; position of the block and jump differ by no more."""
     soft, rigid = (spring_slider(**keys).reduced() for keys in ({"stop_stiffness_N_per_m": 1e12}, {}))
     assert np.abs(soft["displacement_m"] - rigid["displacement_m"]).max() < np.abs(rigid["stop_force_N"]).max() / 1e12 * 2
     assert [event.kind for event in soft.events][:2] == [event.kind for event in rigid.events][:2]
@@ -187,7 +189,8 @@ def test_stiff_stop_is_the_rigid_one() -> None:
 
 @pytest.mark.parametrize("sticking", ["rigid", "elastic"])
 def test_soft_stops_of_a_truss_are_those_of_the_closed_form(sticking: str) -> None:
-    """Where friction sticks rigidly the truss is the closed form; where the pad gives, by 30 N over its k_t, 2e-6 m."""
+    """With rigid sticking the truss equals the closed form; with elastic sticking the pad yields by 30 N over k_t, 2e-6
+    m."""
     times, slide, force = states(truss({"sticking": sticking}, clearance_minus_m=MINUS, clearance_plus_m=PLUS,
                                        stop_stiffness_N_per_m=STOP))
     exact = spring_slider(stop_stiffness_N_per_m=STOP).reduced().at(times)
@@ -199,7 +202,7 @@ def test_soft_stops_of_a_truss_are_those_of_the_closed_form(sticking: str) -> No
 
 @pytest.mark.parametrize("play", [1e-4, 6e-4])
 def test_play_of_a_truss_is_that_of_the_identified_joint(play: float) -> None:
-    """Slide and force of the slider are the loop of a friction with play behind its own k_t."""
+    """Slip and force of the slider form the loop of friction with play, in series with the pad's stiffness k_t."""
     _, slide, force = states(truss(play_m=play))
     stiffness = pad_stiffness()
     joint = {"stiffness": stiffness, "friction": FRICTION, "preload": 0.0, "play": play}
@@ -210,7 +213,7 @@ def test_play_of_a_truss_is_that_of_the_identified_joint(play: float) -> None:
 
 
 def pad_stiffness() -> float:
-    """Return Mindlin's k_t of the pad under its normal force [N/m]: 8 G* a, Hertz's radius a."""
+    """Return Mindlin's tangential stiffness of the pad under its normal force [N/m]: 8 G* a with Hertz's radius a."""
     radius, modulus, poisson = 0.05, 70e9, 0.3
     effective = modulus / (2 * (1 - poisson**2))
     contact = (3 * (FRICTION / 0.3) * radius / (4 * effective)) ** (1 / 3)
@@ -234,8 +237,8 @@ def test_energies_balance(keys: dict[str, float]) -> None:
     {"play_m": 2e-4, "clearance_minus_m": MINUS, "clearance_plus_m": PLUS, "stop_stiffness_N_per_m": STOP},
 ])
 def test_slow_motion_is_the_quasi_static_path(keys: dict[str, float]) -> None:
-    """The bar and its end have a period of 1 ms, the program bends over seconds. Samples of the path are interpolated over
-    what happens between two of its states: by half of the free expansion between them, and half of the friction."""
+    """The bar with its end mass has a period of 1 ms, while the program changes over seconds. The path is interpolated
+    between its states; the allowed error is half of the free expansion between two states plus half of the friction."""
     case = truss({"sticking": "elastic"}, **keys)
     path, motion = case.reduced(), case.reduced(dynamic=True)
     between = EXPANSION * LENGTH * 115.0 / 50
@@ -251,8 +254,8 @@ def test_slow_motion_is_the_quasi_static_path(keys: dict[str, float]) -> None:
     {"play_m": 2e-4, "clearance_plus_m": PLUS, "stop_stiffness_N_per_m": STOP},
 ])
 def test_explicit_steps_are_the_motion(keys: dict[str, float]) -> None:
-    """Both schemes move a loaded end of 1000 kg, which swings through play and stop for two periods. Friction is of first
-    order in implicit steps, of 40000 in two periods: 4 π/40000 of the swing and of the heat."""
+    """A loaded end of 1000 kg swings through play and stop for two periods. The implicit scheme treats friction with
+    first-order accuracy: with 40000 steps in two periods the error is 4 π/40000 of swing and of heat."""
     period = 2 * np.pi * np.sqrt(1000.0 * LENGTH / RIGIDITY)
     load, steps = 1500.0, 40000
     nodes = [TRUSS["node"][0], TRUSS["node"][1] | {"force_N": [load, 0.0], "mass_kg": 1000.0}]
@@ -275,8 +278,8 @@ def test_explicit_steps_are_the_motion(keys: dict[str, float]) -> None:
 
 
 def test_play_moves_beside_a_latch_hinge() -> None:
-    """Two structures in one case that share nothing move as each alone. Steps that have no solution at an edge of the
-    latch are taken by damped halves in both; what rings then differs by 1e-4 of the slide."""
+    """Two uncoupled structures in one case move as each alone. Steps without a solution at an edge of the latch's play
+    become damped half steps in both, so vibrations differ by 1e-4 of the slide."""
     lever = {
         "node": [{"name": "P", "position_m": [0.0, 1.0], "fixed": ["x", "y"]}, {"name": "Q", "position_m": [0.5, 1.0]},
                  {"name": "R", "position_m": [0.5, 0.6], "fixed": ["x", "y"]}],
@@ -296,7 +299,7 @@ def test_play_moves_beside_a_latch_hinge() -> None:
 @pytest.mark.parametrize("scheme", ["set_valued", "regularised"])
 @pytest.mark.parametrize("keys", [{}, {"play_m": 1e-4}, {"play_m": 1e-7}])
 def test_motion_begins_at_rest(scheme: str, keys: dict[str, float]) -> None:
-    """Friction that holds a load at the start does so in motion: nothing moves. The pad gives by 7e-7 m."""
+    """Friction that holds a load at the start also holds it in motion, so nothing moves. The pad yields by 7e-7 m."""
     nodes = [TRUSS["node"][0], TRUSS["node"][1] | {"force_N": [FRICTION / 2, 0.0]}]
     still = {"shape": "table", "table_time_s": [0.0, 0.05], "table_temperature_change_K": [0.0, 0.0], "cycles": 1}
     case = sj.load(TRUSS | {"node": nodes, "slider": [TRUSS["slider"][0] | keys], "thermal": still,
@@ -311,7 +314,7 @@ def test_motion_begins_at_rest(scheme: str, keys: dict[str, float]) -> None:
 
 @pytest.mark.parametrize("model", ["coulomb_soft_stops", "coulomb_play"])
 def test_identified_joint_goes_into_a_case(model: str) -> None:
-    """The section of the loop of a slider is that slider, within the interval of noise."""
+    """The section identified from the loop of a slider is that slider, within the interval of the noise."""
     true = {"coulomb_soft_stops": {"clearance_minus_m": MINUS, "clearance_plus_m": PLUS, "stop_stiffness_N_per_m": STOP},
             "coulomb_play": {"play_m": 4e-4}}[model]
     own = {key.removesuffix("_N_per_m").removesuffix("_m"): value for key, value in true.items()}

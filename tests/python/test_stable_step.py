@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stable time steps: the kernel's limit, the two estimates made of it, and what a run in YADE reports."""
+"""Stable time steps: the kernel's limit, the two estimates based on it, and the value that a run in YADE reports."""
 from __future__ import annotations
 
 import json
@@ -35,7 +35,7 @@ def test_limit_by_hand() -> None:
 
 @pytest.fixture(scope="module")
 def undamped():
-    """Table 1 without dampers, stops out of reach: only the bar and the floor count."""
+    """The paper's Table 1 without dashpots and with stops out of reach: only bar and floor have stiffness."""
     values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
     values["dem"].update(link_damping_ratio=0.0, contact_damping_ratio=0.0)
     values["joint"].update(clearance_minus_m=0.1, clearance_plus_m=0.1)
@@ -43,7 +43,8 @@ def undamped():
 
 
 def test_spring_slider_by_hand(undamped) -> None:
-    """Floor at twice its 100 N, R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84: a, 2 E* a, 8 G* a; bar 1.26e6 N/m."""
+    """The floor contact carries twice its 100 N: R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84 give its radius a, 2 E* a
+    and 8 G* a. The bar has 1.26e6 N/m."""
     modulus, shear = 70e9 / (2 * 0.91), 70e9 / (4 * 1.7 * 1.3)
     width = (200 * 0.05 / (4 / 3 * modulus)) ** (1 / 3)
     mass = 2700 * 9e-6 * 0.5 / 3 + undamped.dem_settings.slider_mass_kg
@@ -58,7 +59,8 @@ def test_spring_slider_by_hand(undamped) -> None:
     (2e-3, 100.0, "across"),  # no stop is met
 ])
 def test_damped_spring_slider_by_hand(play_m: float, heated_K: float, stiffer: str) -> None:
-    """Both axes of the slider: springs of bar, floor and stop at twice their forces, a dashpot 2 zeta sqrt(k m) each."""
+    """Both axes of the slider have the stiffnesses of bar, floor and stop at twice their forces, each with a dashpot 2
+    zeta sqrt(k m)."""
     values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
     values["joint"].update(clearance_plus_m=play_m, clearance_minus_m=play_m, preload_stiffness_N_per_m=1e5)
     values["thermal"]["temperature_change_max_K"] = heated_K
@@ -82,7 +84,7 @@ def test_damped_spring_slider_by_hand(play_m: float, heated_K: float, stiffer: s
 
 
 def test_spring_slider_as_the_dem_reports(yade: str, undamped) -> None:
-    """The estimate is made of the stiffness that the DEM's contact has; the run's own is on the safe side of it."""
+    """The estimate uses the contact stiffness of the DEM; the value that the run reports is not larger."""
     script = REPOSITORY / "tests" / "yade" / "scripts" / "stable_step.py"
     paths = [str(BUILT), str(script.parent), str(REPOSITORY / "yade_scripts" / "runner")]
     done = subprocess.run(
@@ -155,14 +157,16 @@ contact_damping_ratio = 0.0
 
 
 def test_truss_by_hand() -> None:
-    """One node between two links: a third of the mass of each, 0.0081 kg in all, and 2 x 1.26e6 N/m."""
+    """One node between two links has a third of the mass of each link, 0.0081 kg in all, and the stiffness 2 x 1.26e6
+    N/m."""
     case = parse_case(tomllib.loads(TRUSS))
     found = truss_dem.stable_time_step(case, solve(case))
     assert found == pytest.approx(2 * sqrt(2 * 2700 * 9e-6 * 0.5 / 3 / (2 * 70e9 * 9e-6 / 0.5)), rel=1e-12)
 
 
 def test_damped_and_cooled_truss_by_hand() -> None:
-    """Links 0.1 % shorter are stiffer by that; a dashpot 2 zeta sqrt(k m) on each, m the node's, and two on the node."""
+    """Links 0.1 % shorter are stiffer by 0.1 %. Each has a dashpot 2 zeta sqrt(k m) with the node's mass m; both act on
+    the node."""
     text = TRUSS.replace("thermal_expansion_per_K = 0.0", "thermal_expansion_per_K = 1e-4")
     text = text.replace("temperature_change_max_K = 10", "temperature_change_max_K = -10")
     case = parse_case(tomllib.loads(text.replace("link_damping_ratio = 0.0", "link_damping_ratio = 0.3")))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``start.friction``: one structure as ``spring_slider``, as ``truss`` and in the DEM starts alike and jumps alike."""
+"""``start.friction``: one structure has the same start and jump as ``spring_slider``, as ``truss`` and in the DEM."""
 from __future__ import annotations
 
 from typing import Any
@@ -33,7 +33,7 @@ def as_spring_slider(start: str, **changes: Any) -> sj.Case:
 
 
 def as_truss(start: str, preload_N: float = PRELOAD_N, **changes: Any) -> sj.Case:
-    """Return the same bar as a truss: the spring lies beside it."""
+    """Return the same bar as a truss; the preload spring is parallel to the bar."""
     document = {
         "case": {"name": "bar", "kind": "truss", "title": "Bar on a slider", "source": "test"},
         "truss": {"dimension": 2},
@@ -111,7 +111,7 @@ def test_motion_with_contacts_that_give(start: str, friction_law: str, sticking:
 
 @pytest.mark.parametrize("build", (as_spring_slider, as_truss))
 def test_dem(build: Any) -> None:
-    """It starts from the same state, whatever friction carries there, and leaves the same jump."""
+    """The DEM starts from the same state for any initial friction, and reports the same jump."""
     first_way_m = []
     for start in STARTS:
         case = build(start)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rest sets through Python: closed forms, curves and meshes from callables, case files, the files written."""
+"""Rest sets through Python: closed forms, curves and meshes from callables, case files, and written files."""
 from __future__ import annotations
 
 import json
@@ -88,7 +88,7 @@ def test_profile_of_a_bore() -> None:
 
 
 def test_can_of_a_cylinder() -> None:
-    """The band on the mesh of the can against the closed form; rims are corners, not on the mesh."""
+    """The rest set on the mesh of a closed cylinder equals the closed form; it excludes the rims, which are corners."""
     mesh = can_mesh(C, 2e-4)
     exact = _engine.rest_in_bore(C, 2e-4, [(3, 4, 1)], 0.4)["any"]
     found = _engine.rest_on_mesh(mesh, [(3, 4, 1)], 0.4)["any"]
@@ -232,9 +232,9 @@ def test_paraview_file(tmp_path: Path) -> None:
 
 
 def write_sphere(path: Path, level: int = 3, every: int = 0) -> None:
-    """A clearance sphere as ASCII STL in millimetres, a soup of triangles with inward right-hand normals.
+    """A clearance sphere as ASCII STL in millimetres: unconnected triangles with inward right-hand normals.
 
-    :param every: which of the coordinates is off by a unit in the last place of a float, as exporters leave; 0: none
+    :param every: every n-th coordinate differs by a unit in the last place of a float, as in exported files; 0: none
     """
     mesh = _engine.clearance_sphere(C, level)
     lines = ["solid socket"]
@@ -300,7 +300,7 @@ def test_bad_mesh_files(tmp_path: Path, file: str, content: str | None, sentence
 
 
 def test_library(tmp_path: Path) -> None:
-    """Without any file: a case from a dict, its sets as a table, as a picture, in a notebook."""
+    """Without files: the case is a dict; its rest sets are a table, a picture, notebook output."""
     import matplotlib
 
     backend = matplotlib.get_backend()

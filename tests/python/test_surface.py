@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A reflecting surface: what is moved is what is found; what cannot be found is said."""
+"""A reflecting surface: a known displacement is recovered by the fit; what cannot be determined is reported."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ FOCAL = 2.5
 
 
 def nodes(rings: int = 8, radius: float = 1.5) -> np.ndarray:
-    """Rings of 6, 12, 18 ... nodes on the paraboloid of focal length FOCAL, and its vertex."""
+    """The vertex of the paraboloid of focal length FOCAL, and rings of 6, 12, 18, ... nodes on it."""
     found = [(0.0, 0.0)]
     for ring in range(1, rings + 1):
         angle = 2 * np.pi * np.arange(6 * ring) / (6 * ring)
@@ -37,7 +37,7 @@ def turned(positions: np.ndarray, rotation: np.ndarray) -> np.ndarray:
 
 
 def test_drawn_paraboloid_is_found_wherever_it_stands() -> None:
-    """Rounding of coordinates of some metres over a sag of 0.2 m."""
+    """The tolerance is the rounding of coordinates of some metres, over a sag of 0.2 m."""
     turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
     vertex = np.array([3.0, -2.0, 7.0])
     found = sj.surface.Design.of(DRAWN @ turn.T + vertex, turn[:, 2])
@@ -75,7 +75,7 @@ def test_change_of_focal_length_is_found_by_the_last_definition_alone() -> None:
 
 @pytest.mark.parametrize("term", range(1, 37))
 def test_every_zernike_term_returns_its_coefficient(term: int) -> None:
-    """Least squares of exact terms is exact but for rounding times the condition of 217 nodes."""
+    """A least-squares fit of exact Zernike terms is exact, but for rounding times the condition number of 217 nodes."""
     moved = np.zeros_like(DRAWN)
     moved[:, 2] = 1e-6 * zernike(term, DRAWN[:, :2] / 1.5)
     wanted = np.zeros(36)
@@ -84,7 +84,8 @@ def test_every_zernike_term_returns_its_coefficient(term: int) -> None:
 
 
 def test_zernike_terms_are_those_of_noll() -> None:
-    """Orthonormal over the circle by Gauss quadrature along the radius; the first terms as Noll prints them."""
+    """Terms are orthonormal over the circle, by Gauss quadrature along the radius; the first terms equal Noll's
+    formulas."""
     assert [noll(term) for term in range(1, 12)] == [
         (0, 0), (1, 1), (1, -1), (2, 0), (2, -2), (2, 2), (3, -1), (3, 1), (3, -3), (3, 3), (4, 0)]
     along, weight = np.polynomial.legendre.leggauss(20)
@@ -131,7 +132,7 @@ def test_few_nodes_determine_few_terms() -> None:
 
 
 def test_repeatability_is_a_quantile_with_an_honest_interval() -> None:
-    """Uniform changes up to 1 µm over 2 m: 99 % is 0.495 µm/m; too few samples have no upper end."""
+    """Changes are uniform up to 1 µm over 2 m: their 99 % quantile is 0.495 µm/m. Too few samples give no upper end."""
     drawn = np.random.default_rng(1).uniform(-1e-6, 1e-6, 20000)
     found = sj.surface.repeatability(drawn, 2.0)
     assert found.low < 0.495 < found.high and found.high - found.low < 5e-3
@@ -188,8 +189,8 @@ def test_command_of_a_truss(statejump: Callable[..., Any], tmp_path: Path, cases
 
 
 def test_best_fit_of_the_surface_is_that_of_the_answers() -> None:
-    """Two ways to the best fit, of a reflector that two other joints make crooked: linear about the drawn one, and
-    nonlinear of the moved nodes. They differ in the second order, displacement over size: 82 µm/41 mm = 2e-3."""
+    """Two best fits of a reflector distorted by two changed joints: linear about the reference configuration, and
+    nonlinear through the displaced nodes. They differ in second order, displacement over size: 82 µm/41 mm = 2e-3."""
     from statejump.kinds.truss.answers import reflector
 
     case = sj.load("cases/trusses/umbrella_8.toml").changed({

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables as spreadsheets and test rigs write them: one content in many spellings, and what is ambiguous refused."""
+"""Tables as written by spreadsheets and test rigs: many notations of the same content, and refusal of ambiguous ones.
+"""
 from __future__ import annotations
 
 import subprocess
@@ -135,7 +136,7 @@ def test_text_in_another_code_page_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_decimal_comma_may_come_late(tmp_path: Path) -> None:
-    """Thousands are ruled out by one number that cannot be one, in another block of rows."""
+    """A decimal comma is recognised late: by one number without thousands, in a later block of rows."""
     (tmp_path / "a.txt").write_text("x\ty\n" + "1\t1,234\n" * 5000 + "1\t0,5\n")
     with open_table(tmp_path / "a.txt") as table:
         found = [table.numbers([row[1] for row in rows], lambda index: (0, "y")) for _, rows in table.blocks()]

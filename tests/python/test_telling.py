@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The door through which commands tell: whatever becomes of it, the run and its files are complete, and the status is
-that of the run. 1 says that a tolerance is missed and nothing else."""
+"""Console output of commands: if writing to the console fails, the run and its files are still complete, and the exit
+status is that of the run. Status 1 means only that a tolerance is missed."""
 from __future__ import annotations
 
 import json
@@ -26,7 +26,7 @@ FILES = ["reduced.h5", "reduced_history.csv"]
 
 
 def shell(line: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run a line of the shell; ``statejump`` in it is the command."""
+    """Run a line of the shell in which ``statejump`` is the command under test."""
     return subprocess.run(
         ["bash", "-c", f'statejump() {{ "{COMMAND}" "$@"; }}\n{line}'], cwd=folder, text=True, timeout=200,
         env={**os.environ, **environment}, capture_output=True, stdin=subprocess.DEVNULL, errors="replace",
@@ -104,7 +104,7 @@ def test_signal_while_it_starts(cases: Path, tmp_path: Path, number: int, status
 def test_signal_while_the_engine_is_at_work(
     cases: Path, tmp_path: Path, number: int, status: int, phase: str
 ) -> None:
-    """The engine hands a signal on to Python; a path that it ends is no result."""
+    """The engine passes a signal on to Python; a path interrupted by a signal gives no result."""
     run = subprocess.Popen(
         [COMMAND, "truss", "answers", str(cases / "trusses/ring_12.toml")], cwd=tmp_path, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, "PYTHONUNBUFFERED": "1"},
@@ -121,7 +121,7 @@ def test_signal_while_the_engine_is_at_work(
 
 
 def test_internal_fault_has_a_status_of_its_own(tmp_path: Path) -> None:
-    """Also where the fault comes while a failure is told, or before there is anybody to tell it."""
+    """An internal error has its own exit status, also during the report of a failure or before reporting is set up."""
     launcher = Path(COMMAND).read_text()
     for broken in ("import statejump.cli.main as cli; cli._report_failure = None; cli.cli = None", "raise MemoryError"):
         script = tmp_path / "broken.py"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperatures from files: what they say is followed exactly, what is wrong with them is one sentence."""
+"""Temperatures from files: they are used exactly as written, and an invalid file gives one sentence."""
 from __future__ import annotations
 
 import tomllib
@@ -38,14 +38,14 @@ def write(path: Path, header: str, rows: np.ndarray) -> Path:
 
 
 def histories(count: int) -> np.ndarray:
-    """Return temperatures [K] of members at TIMES (5, count), different for each."""
+    """Return temperatures [K] of members at TIMES, as an array (5, count); they differ between members."""
     shape = np.array([0.0, 40.0, 110.0, 25.0, 0.0])
     return REFERENCE_K + shape[:, None] * (1 + 0.1 * np.arange(count))
 
 
 @pytest.fixture
 def chain(tmp_path: Path) -> tuple[Path, list[str], np.ndarray]:
-    """A chain whose links have temperatures of their own, its file, their names, their temperatures [K]."""
+    """A chain whose links have individual temperatures, its temperature file, link names and temperatures [K]."""
     data = document("trusses/chain_10", members_file="members.csv", reference_temperature_K=REFERENCE_K)
     names = [link["name"] for link in data["link"]]
     given = histories(len(names))
@@ -182,7 +182,7 @@ def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, lis
     (["2026-03-01T00:00:00", "2026-03-01T00:30:00", "2026-03-01T01:15:00", "2026-03-01T03:30:00", "2026-03-01T05:00:00"],
      "time")])
 def test_hours_dates_and_degrees(times: list[str], unit: str, chain: tuple[Path, list[str], np.ndarray]) -> None:
-    """As a German spreadsheet writes it; °C needs the reference temperature, and there is one."""
+    """The format is that of a German spreadsheet. Degrees Celsius need the reference temperature, which is given."""
     path, names, given = chain
     rows = [";".join([time, *(f"{value - 273.15:.4f}".replace(".", ",") for value in row)]) for time, row in zip(times, given)]
     path.with_name("members.csv").write_text("\r\n".join(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A table of temperatures lasts as long as its last time says, in every kind of case and in both models."""
+"""The period of a temperature table is its last time, in every kind of case and in both models."""
 from __future__ import annotations
 
 import tomllib
@@ -37,7 +37,7 @@ def test_times_of_a_table_are_the_times(name: str) -> None:
 
 
 def test_length_of_the_cycle_matters() -> None:
-    """The damped rib comes back otherwise from a cycle of 10 s than from one of 1 s: to squeeze one into the other
+    """The damped rib returns to different positions after cycles of 10 s and of 1 s; scaling a table to another period
     was wrong physics."""
     case = sj.load("cases/umbrella_damped.toml")
     slow = case.changed({**TABLE, "thermal.period_s": None}).reduced().summary["theta2_jump_rad"]
@@ -66,7 +66,7 @@ def test_what_goes_to_yade_has_the_times_of_the_table() -> None:
 
 
 def old_document() -> dict[str, Any]:
-    """Return Table 1 as files had it that said the period among the DEM's numbers."""
+    """Return the paper's Table 1 in an old file format, in which the DEM's section held the period."""
     data = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8"))
     data["dem"]["period_s"] = data["thermal"].pop("period_s") / 4
     return data

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clusters under TLS, set up as docs/security.md says: scheduler, worker and command on this machine, each with a
-certificate of its own. Who has none, or one of another authority, is not let in."""
+"""Clusters under TLS, set up as in docs/security.md. Scheduler, worker and command run on this machine, each with its
+own certificate. A process without a certificate, or with one of another authority, is refused."""
 from __future__ import annotations
 
 import json
@@ -25,7 +25,8 @@ PARTS = ("scheduler", "worker", "client")
 
 
 def certificates(folder: Path) -> Path:
-    """Make an authority and a certificate of it for each part; return Dask's configuration as the page has it."""
+    """Make a certificate authority and a certificate for each process; return Dask's configuration of docs/security.md.
+    """
     folder.mkdir()
 
     def openssl(*words: str) -> None:

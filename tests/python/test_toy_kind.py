@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A kind of case is added from a folder of the tests, without touching any file of the package."""
+"""A kind of case is added from a folder of the tests, without changes to files of the package."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ JUMP_m = 2.0 * 2e-5 * 100.0 * 0.1
 
 @pytest.fixture
 def rod(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A case file of the toy kind, which is registered as long as the test lasts."""
+    """A case file of the toy kind of case, which is registered only during the test."""
     monkeypatch.syspath_prepend(str(HERE / "toy"))
     known = dict(kinds.KINDS)
     kinds.register(PLACE)

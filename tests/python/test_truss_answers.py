@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers about trusses: closed forms of the chain, verdicts, fits of a surface, what the command writes."""
+"""``truss answers``: closed forms for the chain, verdicts, fits of a surface, and files of the command."""
 from __future__ import annotations
 
 import csv
@@ -91,7 +91,8 @@ def test_friction_forces_give_the_jump_back(mast: TrussPath) -> None:
 
 @pytest.mark.parametrize("name", ["ball_tripod", "latch_boom", "latch_lever", "telescope", "bolted"])
 def test_friction_of_every_type_of_joint_gives_the_jump_back(name: str) -> None:
-    """The truss without friction, under what stands for it, is where the path ended: forces, moments, signs."""
+    """A truss without friction, under the forces that replace it, reaches the end of the path: forces, moments, signs.
+    """
     case = sj.load(bolted()) if name == "bolted" else sj.load(f"trusses/{name}")
     path = quick_path(case.definition.resolve())
     shares = contributions(path, chosen_output(path, "node"))
@@ -130,7 +131,7 @@ def test_kink_whose_slopes_cancel_is_said() -> None:
 
 
 def moved_by(path: TrussPath, each: list[float], node: int = 0) -> TrussPath:
-    """The path with a node that moves so far [m] along x over each cycle, and nothing else."""
+    """A copy of the path in which only one node moves, by the given distances [m] along x over each cycle."""
     moved = np.zeros((len(each) + 1, len(path.truss.nodes.names), 3))
     moved[1:, node, 0] = np.cumsum(each)
     still = {key: np.zeros((len(each) + 1, 1)) for key in path.cycle_ends if key.endswith("_dissipation_J")}
@@ -139,7 +140,8 @@ def moved_by(path: TrussPath, each: list[float], node: int = 0) -> TrussPath:
 
 
 def growing(path: TrussPath, each: list[float], error: Callable[[int], float]) -> tuple[Verdict, list[int]]:
-    """Verdict on paths whose later cycles have an error that depends on the increments; the increments asked for."""
+    """Verdict on paths whose later cycles have an error that depends on the increments; the numbers of increments
+    tried."""
     asked = []
 
     def solve(increments: int) -> TrussPath:
@@ -167,7 +169,7 @@ def test_verdicts(mast: TrussPath) -> None:
 
 
 def test_growth_is_told_only_if_it_survives_smaller_increments(mast: TrussPath) -> None:
-    """0.038 nm per cycle that fall with the increments are none; 0.02 nm that stay are told, whatever falls beside."""
+    """Growth of 0.038 nm per cycle that vanishes with more increments is not reported; lasting growth of 0.02 nm is."""
     once = [1e-6, 0.0, 0.0]
 
     def falling(order: float) -> Callable[[int], float]:
@@ -187,8 +189,8 @@ def test_growth_is_told_only_if_it_survives_smaller_increments(mast: TrussPath) 
 
 
 def test_rolling_along_a_loop_is_of_fourth_order() -> None:
-    """A sine takes the joints back on another path than they came by. They stick, and what is left after a cycle is
-    what the rule for radii that follow Hertz's depth leaves: a sixteenth with twice the increments."""
+    """Under a sine program the joints return on another path and stick. The displacement over a cycle is then the error
+    of the integration rule; twice the increments reduce it to a sixteenth."""
     truss = made("mast", 3, shape="sine", friction_coefficient=0.5, temperature_change_K=-100.0, cycles=3,
                  tip_load_N=10.0, shaded_fraction=0.0)
     increments = np.array([12, 25, 50])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ball joints of spatial trusses: what cases, commands and drawings say, and the DEM beside the solver."""
+"""Ball joints of spatial trusses: results of cases, commands and drawings, and comparison of DEM and solver."""
 from __future__ import annotations
 
 import tomllib
@@ -27,7 +27,7 @@ TRIPOD = _paths.SHARE / "cases" / "trusses" / "ball_tripod.toml"
 
 
 def tripod(**joint: Any) -> dict[str, Any]:
-    """The shipped case as a dict, keys of its joint changed; None: the key is left out."""
+    """The shipped case as a dict with changed keys of its joint; a key with the value None is removed."""
     made = tomllib.loads(TRIPOD.read_text())
     joints = made["ball_joint"][0] | joint
     made["ball_joint"] = [{key: value for key, value in joints.items() if value is not None}]
@@ -82,8 +82,8 @@ def test_parts_may_not_be_drawn_apart() -> None:
 
 
 def test_increments_matter_to_second_order_only() -> None:
-    """Twice as many leave a quarter of the error of the jump, which is a 300th of the loop, where none is cut for the
-    energies."""
+    """Without step halving for the energies, twice the increments reduce the error of the jump to a quarter. The jump
+    is 1/300 of the loop."""
     truss = parse_case(tripod()).resolve()
     jumps = [solve.path(truss, increments_per_branch=increments, energy_tolerance=1).cycle_ends["displacement_m"]
              for increments in (25, 50, 1600)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaigns over trusses: items that vary together or one by one, and campaigns that are resumed."""
+"""Campaigns of trusses: joints or other items that vary together or one by one, and resumed campaigns."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -91,7 +91,8 @@ def test_no_dem_campaign(campaign: Callable[..., Plan]) -> None:
 
 
 def test_half_a_campaign_resumed(tmp_path: Path, campaign: Callable[..., Plan]) -> None:
-    """Half of the samples, a torn line as a kill leaves it, the others: the same bytes as in one go."""
+    """A campaign's journal with half of the samples and a torn last line, as after a kill, gives the same bytes when
+    resumed."""
     trial = campaign(FRICTION, ONE)
 
     def finish(folder: Path) -> tuple[bytes, bytes]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Case files of kind truss: what they mean, what is wrong with them, generators and drawings."""
+"""Case files of kind truss: interpretation, messages for mistakes, generators and drawings."""
 from __future__ import annotations
 
 import copy
@@ -32,7 +32,7 @@ EXAMPLES = ("chain_10", "iwan_10", "mast_6", "ring_12", "umbrella_8", "umbrella_
 
 
 def frame() -> dict[str, Any]:
-    """A planar truss with one item of every kind: A and D on ground, a slider at C, a joint B-J."""
+    """A planar truss with one item of every type. A and D are fixed; C has a slider, B and J share a joint."""
     return copy.deepcopy({
         "case": {"name": "frame", "kind": "truss"},
         "truss": {"dimension": 2},
@@ -61,7 +61,7 @@ def frame() -> dict[str, Any]:
 
 
 def spatial() -> dict[str, Any]:
-    """Two spatial bars with a joint and a torsion spring about y."""
+    """Two bars in space with a joint between them and a torsion spring about y."""
     return {
         "case": {"name": "spatial", "kind": "truss"},
         "truss": {"dimension": 3},
@@ -539,8 +539,8 @@ def test_ribs_of_an_umbrella_are_turned_copies() -> None:
 
 
 def stiffness_and_forces(truss: ResolvedTruss, temperature_change_K: float) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues of the stiffness and axial forces (tension positive) of the links of a planar truss whose
-    joints are ideal pins, linear about the drawn shape."""
+    """Eigenvalues of the stiffness, and axial forces (tension positive) of the links, for a planar truss with ideal
+    pins, linear about the reference configuration."""
     count = len(truss.nodes.names)
     same = np.arange(count)
     same[truss.revolutes.journal_node] = truss.revolutes.bearing_node
@@ -646,7 +646,7 @@ def test_a_failure_names_joint_and_nodes() -> None:
 
 
 def test_programs_of_equal_duration_are_those_to_rounding() -> None:
-    """3 x 0.1 s is not 0.3 s in floating point; it is another number of cycles of the same duration."""
+    """In floating point 3 x 0.1 s is not 0.3 s; different numbers of cycles may have the same duration."""
     data = frame()
     data["thermal"].update(cycles=1, period_s=0.3)
     set_key("program", "shade", cycles=3, period_s=0.1)(data)

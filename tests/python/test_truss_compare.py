@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses in the DEM and beside the quasi-static solver, through the command."""
+"""Trusses in the DEM, compared with the quasi-static solver by the command."""
 from __future__ import annotations
 
 import json
@@ -70,7 +70,8 @@ def test_chain_jumps_as_the_closed_form_and_does_not_drift(statejump, tmp_path: 
 
 
 def test_cable_goes_taut_and_slack_as_on_the_path(statejump, tmp_path: Path) -> None:
-    """Slack when cold, taut between: it holds the heated chain back, and the jump is that of the chain without it."""
+    """The cable is slack at the ends of the cycle and taut in between. It restrains the hot chain but does not change
+    the jump."""
     n, friction, stiffness, free_m = 3, 100.0, 2e5, 1.501
     made = generate.chain(n, friction_force_N=friction, period_s=0.5)
     made["spring"] = [{"name": "tie", "nodes": ["N0", "N3"], "stiffness_N_per_m": stiffness, "free_length_m": free_m,
@@ -100,7 +101,8 @@ def test_cable_goes_taut_and_slack_as_on_the_path(statejump, tmp_path: Path) -> 
 
 
 def test_ring_with_joints_that_stick_elastically_jumps_as_in_the_dem(statejump, tmp_path: Path) -> None:
-    """Slips of some f/k_t: micrometres. Rigid sticking leaves joints elsewhere, by a fifth of the loop."""
+    """Elastic slips are about f/k_t, micrometres. With rigid sticking, final positions differ by a fifth of the loop.
+    """
     made = generate.ring(6, sticking="elastic")
     outcome = statejump("compare", case_file(tmp_path, made))
     assert outcome.status == 0, outcome.output + outcome.errors
@@ -116,7 +118,7 @@ def test_ring_with_joints_that_stick_elastically_jumps_as_in_the_dem(statejump, 
 
 
 def test_rib_in_space_is_the_rib_in_the_plane() -> None:
-    """One of 3 ribs that nothing couples, on its slanted plane: masses, time step, loaded start."""
+    """One of three uncoupled ribs in inclined planes has the masses, time step and loaded start of the planar rib."""
     planar = parse_case(generate.umbrella(1))
     spatial = parse_case(generate.umbrella(3))
     paths = [solve(case) for case in (planar, spatial)]
@@ -135,7 +137,7 @@ def test_rib_in_space_is_the_rib_in_the_plane() -> None:
 
 
 def test_ribs_in_space_move_as_the_rib_in_the_plane(tmp_path: Path) -> None:
-    """Not slow, so that the swing of the links is compared as well."""
+    """The period is short, so that vibration of the links is compared too."""
     runs = {}
     for n in (1, 3):
         made = generate.umbrella(n, period_s=0.3)
@@ -243,7 +245,8 @@ def test_what_the_dem_cannot_represent_is_named(change, sentence: Failure) -> No
 
 
 def test_a_truss_without_masses_is_at_rest_and_does_not_move(cases: Path) -> None:
-    """Mass is for what moves: the quasi-static solver asks for none, the DEM and the motion do."""
+    """Only dynamics needs masses: the quasi-static solver works without them, the DEM and truss dynamics refuse the
+    case."""
     import statejump as sj
     from statejump.core.errors import MissingKey
 
@@ -260,8 +263,8 @@ def test_a_truss_without_masses_is_at_rest_and_does_not_move(cases: Path) -> Non
 
 
 def test_bar_jumps_by_partial_slip_as_in_the_dem() -> None:
-    """Far below gross slip: 77.8 nm, where Coulomb's law and the spring under its limit leave nothing. In the DEM the
-    bar swings by its inertia: 0.1 % at a period of 0.5 s."""
+    """The load is far below gross slip. The jump is 77.8 nm; with Coulomb's law and elastic sticking it would be zero.
+    In the DEM the bar's inertia adds 0.1 % at a period of 0.5 s."""
     made = generate.chain(1, friction_force_N=300.0, temperature_change_K=8.0, period_s=0.5)
     made["reduced"] = {"sticking": "partial_slip"}
     jumps, reasons = {}, {}
@@ -281,7 +284,7 @@ def test_bar_jumps_by_partial_slip_as_in_the_dem() -> None:
 
 
 def hot_joint(part: str, expansion_per_K: float) -> dict[str, Any]:
-    """Return a case: 10 N press a journal down into its bearing, and one of both expands."""
+    """Return a case in which 10 N press a journal down into its bearing, and either journal or bearing expands."""
     return {
         "case": {"name": "hot_joint", "kind": "truss"},
         "truss": {"dimension": 2},
@@ -301,8 +304,8 @@ def hot_joint(part: str, expansion_per_K: float) -> dict[str, Any]:
 
 @pytest.mark.parametrize(("part", "radius_m", "sign"), [("bearing", 5.1e-3, -1.0), ("journal", 5e-3, 1.0)])
 def test_journal_sinks_as_its_bearing_expands_in_every_model(part: str, radius_m: float, sign: float) -> None:
-    """The clearance changes by α ΔT R of the part, 25 µm. Its other value changes the depth of contact by 0.05 µm, and
-    motion swings by less."""
+    """The clearance changes by α ΔT R of the expanding part, 25 µm. The new radius alters the contact depth by 0.05 µm;
+    vibrations are smaller."""
     expansion_per_K = 5e-5
     case = sj.load(hot_joint(part, expansion_per_K))
     explicit = case.changed({"motion.scheme": "regularised", "motion.masses": "lumped", "motion.steps_per_cycle": 8000})

@@ -16,7 +16,7 @@ ALPHA, HOT = 2e-5, 100.0
 
 
 def facing(*constraints: dict[str, Any], **more: Any) -> dict[str, Any]:
-    """Two bars on a line: AB expands, DE does not. Their ends B and E are free along x."""
+    """Two collinear bars: AB expands, DE does not. Their ends B and E move freely along x."""
     return {
         "case": {"name": "facing", "kind": "truss"}, "truss": {"dimension": 2},
         "node": [{"name": "A", "position_m": [0, 0], "fixed": ["x", "y"]},

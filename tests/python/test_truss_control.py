@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the jump of a node of a truss: closed forms, candidates that differ, curves that turn, bad input."""
+"""Control of the jump of a truss node: closed forms, design candidates, curves with extrema, invalid input."""
 from __future__ import annotations
 
 import csv
@@ -26,7 +26,7 @@ STIFFNESS = 1.26e6  # of the bar of Table 1, EA/l [N/m]
 
 
 def bar_on_a_slider(cases: Path) -> sj.Case:
-    """Table 1 as a truss: its bar, and its joint as a slider without stops."""
+    """The paper's Table 1 as a truss: the bar, and its joint as a slider without stops."""
     table1 = load_case(cases / "table1.toml")
     made = sj.truss.chain(1)
     return parse_case({**made.origin.document, "slider": [
@@ -69,7 +69,7 @@ def test_best_of_several_places_is_that_of_the_softest_spring() -> None:
     places = [("N0", "N1"), ("N0", "N2"), ("N0", "N3"), ("N2", "N3")]
 
     def jump_m(place: tuple[str, str], stiffness: float) -> float:
-        """Jump of the last node by hand: all blocks slip in to the end of cooling; K u = f."""
+        """Jump of the last node, calculated by hand: at the end of cooling all blocks slip inwards; K u = f."""
         matrix = k * np.array([[2.0, -1, 0], [-1, 2, -1], [0, -1, 1]])
         one, two = (int(name[1:]) - 1 for name in place)
         ends = np.zeros(3)
@@ -105,7 +105,7 @@ def test_jump_that_turns_is_said_and_both_ranges_are_found() -> None:
 
 
 def made_search(jump: Any, values: tuple[float, ...]) -> Search:
-    """A search along a curve that is given, no truss behind it."""
+    """A search along a prescribed curve of the jump, without a truss."""
     one = Candidate("scale x", "x, times", "-", 1.0, values, lambda value: value, "", "", lambda truss: truss)
     search = Search(one, Sweep("scale x", "x", "-", 1.0, 1.0, []), 0, 50)
     search.jump = lambda value: searching.Jump(jump(value), None)  # type: ignore[method-assign, arg-type]

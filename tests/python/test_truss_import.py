@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses of other programs: what comes back from a solve is that of the truss written by hand; what is left out is
-named."""
+"""Trusses imported from other programs: their solution equals that of the same truss written by hand, and omitted data
+are named."""
 from __future__ import annotations
 
 import subprocess
@@ -118,7 +118,7 @@ assert LARGE != SMALL
 
 
 def check(found: sj.Case) -> None:
-    """The path of the import is that of the truss by hand, to the rounding of the deck's numbers."""
+    """The path of the imported truss equals that of the truss written by hand, to the rounding of the deck."""
     ours, theirs = found.reduced(), sj.load(BY_HAND).reduced()
     for place, wanted in (("displacement_m", ours.history), ("axial_force_N", ours.links)):
         other = (theirs.history if place in theirs.history else theirs.links)[place].values
@@ -266,7 +266,7 @@ def test_sliders_in_links_take_what_identify_wrote(tmp_path: Path, statejump: Ca
 
 
 def test_a_slide_in_a_link_opens_as_the_link_is_pulled(tmp_path: Path) -> None:
-    """A bar between walls cools: it shortens by 2.3 mm, of which the slide gives its 1 mm."""
+    """A bar between walls cools and shortens by 2.3 mm; the slide provides 1 mm of it."""
     (tmp_path / "pull.bdf").write_text(
         "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCONROD,1,1,2,5,1.-4\nMAT1,5,7.+10,,.3,2700.,2.3-5,0.\n"
         "SPC1,1,123,1,2\nTEMP,3,1,-100.,2,-100.\nENDDATA\n")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Iwan joints: what the case, drawing and commands say; identification writes what a case takes and finds it again."""
+"""Iwan joints in cases, drawings and commands. Identification writes a section that a case accepts, and identifies the
+case's loop."""
 from __future__ import annotations
 
 import tomllib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Types of joints of a truss: what the registry lists is what engine and case have, and a type is one file."""
+"""Types of joints of a truss: the registry agrees with engine and case, and each type is defined in one file."""
 from __future__ import annotations
 
 from pathlib import Path

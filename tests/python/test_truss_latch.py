@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Latch hinges: closed forms of a lever, a torsion spring as one without play, what the case, drawing and commands say."""
+"""Latch hinges: closed forms of a lever, equality with a torsion spring if the play is zero, use in cases, drawings and
+commands."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -27,7 +28,7 @@ PLAY_RAD, STIFFNESS, FRICTION_N_M = 5e-4, 200.0, 3.0
 
 
 def lever(**hinge: Any) -> dict[str, Any]:
-    """A lever AB on a latch hinge to the ground, which a strut CB lifts when it is heated by 100 K."""
+    """A lever AB on a latch hinge on the ground. A strut CB, heated by 100 K, lifts the lever."""
     made = document("lever", "Lever on a latch hinge", "closed form", 2, 100.0, "triangle", 1, 1.0)
     made["node"] += [node("A", (0, 0), "xy"), node("B", (L_M, 0)), node("C", (L_M, -H_M), "xy")]
     bar = {"young_modulus_Pa": 70e9, "cross_section_area_m2": RIGIDITY_N / 70e9, "density_kg_per_m3": 2700.0}
@@ -49,8 +50,8 @@ SMALL = 2e-3
 
 
 def test_lever_slips_goes_through_its_play_and_jumps_as_the_closed_form() -> None:
-    """The strut's free growth is the lift and what the moment over L compresses it by: eps H = L phi + c M, with
-    c = H / (E A L)."""
+    """The free expansion of the strut is the lift plus its compression by the force M/L: eps H = L phi + c M, with c =
+    H / (E A L)."""
     found = path(lever())
     states, compliance = found.states, H_M / (RIGIDITY_N * L_M)
     slip, turn, back = found.events[0], found.events[1], found.events[2]
@@ -81,9 +82,10 @@ def test_lever_slips_goes_through_its_play_and_jumps_as_the_closed_form() -> Non
 
 
 def test_energy_is_kept_across_the_edges_of_plays_and_of_cables() -> None:
-    """Steps end where a play or a slack cable does, so that works are of fourth order: (1/20)^4 of what bends.
+    """Steps end where a play closes or a slack cable becomes taut. The work is then fourth-order accurate, (1/20)^4 of
+    the bending energy.
 
-    Of the boom, which turns by a hundredth and crosses its play twice: 1e-4 when its edges are stepped across."""
+    The boom rotates by 0.01 rad and crosses its play twice; steps across its ends would cause an error of 1e-4."""
     for name in ("latch_lever", "latch_boom", "chain_cable"):
         case = sj.load(REPOSITORY / f"cases/trusses/{name}.toml").changed({"reduced.increments_per_branch": 20})
         run = case.reduced()
@@ -112,7 +114,7 @@ def test_hinge_without_play_and_friction_is_a_torsion_spring() -> None:
 
 
 def test_links_within_the_play_of_a_latch_are_slack() -> None:
-    """Within its play, without friction, nothing holds the links of a rib, and they carry nothing."""
+    """Within the play of a latch without friction, nothing holds the links of a rib, so their forces are zero."""
     made = generate.umbrella(1)
     del made["torsion_spring"]
     made["latch_hinge"] = [{"name": "latch", "links": ["AB", "CB"], "deadband_rad": 0.1,
@@ -164,7 +166,7 @@ def test_dem_goes_through_the_play_and_slips_as_the_path(statejump: Callable[...
 
 
 def test_dem_begins_with_the_friction_of_the_path() -> None:
-    """A preload above the friction moment: what is left of it the truss carries, friction all that it can."""
+    """The preload moment exceeds the friction limit: friction acts at its limit, the truss carries the rest."""
     case = parse_case(lever(preload_moment_N_m=-5.0, deadband_rad=0.1))
     start = solve.solve(case)
     values = dem.resolved(case, start)["latch_hinge"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mechanisms as trusses in motion: weight, bodies of their own, driven links."""
+"""Mechanisms as trusses in motion: weight, rigid bodies, driven links."""
 from __future__ import annotations
 
 import os
@@ -24,7 +24,7 @@ MOMENTS = {"crank": 1e-4, "rod": 2.5e-4}
 
 
 def without_play(name: str = "slider_crank", bearing: str = "P") -> dict[str, Any]:
-    """A shipped mechanism with a pin that fits, in links a hundred times as stiff."""
+    """A shipped mechanism with an exact pin as its joint, and links a hundred times as stiff."""
     made = tomllib.loads((REPOSITORY / "cases" / "trusses" / f"{name}.toml").read_text())
     del made["revolute"]
     made["node"] = [node for node in made["node"] if node["name"] != "J"]

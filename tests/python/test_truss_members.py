@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Warnings about a run of a truss: Euler's load and yield strength of links, changes that are taken together."""
+"""Warnings about a run of a truss: Euler load and yield strength of links, status changes that are processed together.
+"""
 from __future__ import annotations
 
 from dataclasses import replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses from meshes: what comes back from a solve is that of the truss written by hand."""
+"""Trusses from meshes: their solution equals that of the same truss written by hand."""
 from __future__ import annotations
 
 import contextlib
@@ -33,7 +33,7 @@ ARGUMENTS = ("--young-modulus", 7e10, "--area", 1e-4, "--thermal-expansion", 2.3
 
 
 def polydata(dtype: Any = np.float64) -> Any:
-    """Return the same triangle as lines and a polygon of VTK, with the data of the bars."""
+    """Return the same triangle as lines and a polygon of VTK, with the data arrays of the bars."""
     points, data = vtkPoints(), vtkPolyData()
     points.SetData(numpy_to_vtk(POINTS.astype(dtype), deep=True))
     data.SetPoints(points)
@@ -59,7 +59,7 @@ def write_vtk(path: Path, data: Any, **settings: Any) -> None:
 
 
 def write(path: Path, **data: Any) -> Path:
-    """Write a mesh of a triangle of bars, with a surface in it that is no part of a truss."""
+    """Write a mesh with a triangle of bars and a surface; the surface does not belong to the truss."""
     if path.suffix == ".vtp":
         write_vtk(path, polydata())
         return path

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Latch hinges and Iwan joints in motion: slow heating beside the path, a mass that swings on a bolted joint. An arch
-that snaps through its play."""
+"""Latch hinges and Iwan joints in truss dynamics: slow heating compared with the quasi-static path, vibration on a
+bolted joint, an arch that snaps through its play."""
 from __future__ import annotations
 
 from typing import Any
@@ -63,7 +63,8 @@ def test_mass_on_an_iwan_joint_swings_as_its_own_equation() -> None:
     bar, mass = 70e9 * 9e-6 / 0.5, MASS_KG + 2700 * 9e-6 * 0.5 / 3
 
     def rate(_: float, state: np.ndarray) -> np.ndarray:
-        """Place, speed and the elements' springs, of which those that slip do not bend further."""
+        """Rates of position, velocity and deflection of the elements' springs; a slipping spring deflects no further.
+        """
         x, v, bends = state[0], state[1], state[2:]
         bending = np.where((np.abs(bends) >= reach) & (bends * v > 0), 0.0, v)
         return np.concatenate([[v, (LOAD_N - bar * x - springs @ bends) / mass], bending])
@@ -117,7 +118,8 @@ def test_arch_snaps_where_the_path_ends_with_the_speed_of_what_it_sets_free() ->
 
 
 def test_arch_snaps_in_the_dem_as_it_does_in_motion() -> None:
-    """The DEM's step is from the motion, since there is no path; that its joint gives a little is what they differ by."""
+    """There is no quasi-static path, so truss dynamics determines the DEM's time step. The results differ by the
+    compliance of the DEM's joint."""
     case = sj.load("two_bar_snap")
     runs = case.reduced(dynamic=True), case.dem()
     assert sj.compare(*runs).passed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses in motion with the DEM's contacts in explicit steps, ``motion.scheme = "regularised"``."""
+"""Trusses in motion with the DEM's penalty contact in explicit steps, ``motion.scheme = "regularised"``."""
 from __future__ import annotations
 
 from typing import Any
@@ -23,7 +23,7 @@ def chain(**changes: Any) -> sj.Case:
 
 
 def rms(run: sj.Run, other: sj.Run) -> float:
-    """Largest root mean square of a node's difference, over the largest displacement."""
+    """Largest root-mean-square difference of a node's displacement, over the largest displacement."""
     apart = np.linalg.norm(run["displacement_m"] - other["displacement_m"], axis=2)
     return float(np.sqrt((apart**2).mean(axis=0)).max() / np.linalg.norm(other["displacement_m"], axis=2).max())
 

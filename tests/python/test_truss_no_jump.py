@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses without joints or links, and jumps that are zero or rounding: every command ends with a sensible sentence."""
+"""Trusses without joints or links, and jumps that are zero or only rounding: every command ends with a clear sentence.
+"""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -21,7 +22,7 @@ LOAD_N = [340.0, -810.0]
 
 
 def frame(**more: Any) -> dict[str, Any]:
-    """Three bars in a plane, one more than is needed, under a load that no round number hides."""
+    """Three planar bars, one more than needed, under a load that is no round number, to cause rounding."""
     nodes = [("A", [0.0, 0.0]), ("B", [0.9, 0.07]), ("C", [1.63, -0.11])]
     return {
         "case": {"name": "frame", "kind": "truss"}, "truss": {"dimension": 2},
@@ -112,7 +113,7 @@ def test_scales_do_not_vanish() -> None:
 
 
 def shifted(run: Run, by_m: float) -> Run:
-    """Return a run as one of the DEM whose last sample is moved by rounding."""
+    """Return a run in the form of a DEM run whose last sample is displaced by rounding."""
     moved = run["displacement_m"].copy()
     moved[-1, 3, 0] += by_m
     nothing = Column(np.zeros(len(run)), "J")

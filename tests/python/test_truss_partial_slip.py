@@ -23,7 +23,7 @@ def path(document: dict[str, Any], **options: Any) -> solve.TrussPath:
 
 
 def turned_rad(found: solve.TrussPath) -> float:
-    """What the link with the bearing turns by from start to end."""
+    """Rotation of the link with the bearing from start to end."""
     ends = found.truss.nodes.position_m + found.cycle_ends["displacement_m"][[0, -1]]
     angles = np.arctan2(*(ends[:, 2] - ends[:, 0])[:, 1::-1].T)
     return float(angles[1] - angles[0])
@@ -31,8 +31,8 @@ def turned_rad(found: solve.TrussPath) -> float:
 
 @pytest.mark.parametrize("friction, cycles", [(0.45, 1), (0.45, 3), (0.3, 1)])
 def test_rib_is_the_elastic_loop(friction: float, cycles: int) -> None:
-    """At 0.45 rigid theory says that it rolls and jumps by nothing; at 0.3 it slides as a whole. The two solvers share
-    the contact's law and nothing else; both are of second order, with the same chords."""
+    """With friction 0.45 and rigid contact the joint would roll with zero jump; with 0.3 it slips fully. The two
+    solvers share only the contact law. Both are second-order accurate and use the same secants."""
     case = load_case(ROOT / "cases" / "umbrella_bias.toml").changed({
         "joint.friction_law": "mindlin_deresiewicz", "joint.friction_coefficient": friction, "thermal.cycles": cycles})
     made = generate.umbrella(1, friction_coefficient=friction, cycles=cycles, sticking="partial_slip")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures as engineers build them: free expansion, sheets that walk, loads that friction cannot hold, slack parts."""
+"""Structures of practice: free expansion, sheets that walk, loads beyond friction, slack elements."""
 from __future__ import annotations
 
 from typing import Any
@@ -34,8 +34,8 @@ def failed(document: dict[str, Any]) -> StatejumpError:
 
 
 def bays(count: int, diagonals: int, dimension: int) -> dict[str, Any]:
-    """Square bays in a row on two supports: with one diagonal a bay determinate, with two not; in space three rows of
-    nodes."""
+    """Square bays in a row on two supports: statically determinate with one diagonal per bay, not with two. In space
+    there are three rows of nodes."""
     rows = [(0.0, 0.0), (0.0, 1.0)] if dimension == 2 else [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
     fixed = [["x", "y"], ["x"]] if dimension == 2 else [["x", "y", "z"], ["x", "z"], ["x"]]
     nodes, links = [], []
@@ -96,7 +96,7 @@ def test_free_truss_with_a_slider_that_never_slips_returns() -> None:
 
 
 def sheet(blocks: int, friction: float, slope: float, change_K: float = 40.0) -> dict[str, Any]:
-    """Blocks in a row down an incline: each carries its part of the weight."""
+    """A row of blocks down an incline; each block carries its part of the weight."""
     weight_N, length_m = 900.0, 6.0
     each = weight_N / blocks
     nodes = [{"name": f"B{i}", "position_m": [length_m * (i + 0.5) / blocks, 0.0], "fixed": ["y"],
@@ -112,8 +112,8 @@ def sheet(blocks: int, friction: float, slope: float, change_K: float = 40.0) ->
 @pytest.mark.parametrize("friction", [0.2, 0.342, 0.45, 0.6])
 @pytest.mark.parametrize("blocks", [4, 5, 9, 16, 33, 60])
 def test_sheet_walks_down_by_the_closed_form(blocks: int, friction: float) -> None:
-    """A sheet of length L on a slope b walks (L tan b / mu)(a dT - (mu cos b - sin b) w L / E A) a cycle, w the weight
-    of a length: both neutral points lie tan b / mu of L apart. Blocks put them at a block, up to half a block off each."""
+    """A sheet of length L and weight w per length on a slope b walks (L tan b / mu)(a dT - (mu cos b - sin b) w L / EA)
+    in a cycle. Its two neutral points are L tan b / mu apart; with discrete blocks each is up to half a block away."""
     slope = 0.15
     found = path(sheet(blocks, friction, slope))
     ends = found.cycle_ends["displacement_m"][:, :, 0]
@@ -125,7 +125,7 @@ def test_sheet_walks_down_by_the_closed_form(blocks: int, friction: float) -> No
 
 
 def frame_on_foot(side_N: float, clearance_m: float | None = None) -> dict[str, Any]:
-    """A bar that only the friction of its foot holds, 24 N."""
+    """A bar held only by the friction of its foot, at most 24 N."""
     nodes = [{"name": "P", "position_m": [0.0, 0.0], "fixed": ["y"]},
              {"name": "Q", "position_m": [1.0, 0.0], "fixed": ["y"], "force_N": [side_N, 0.0]}]
     foot = {"name": "foot", "nodes": ["P"], "axis": [1.0, 0.0], "friction_coefficient": 0.3, "normal_force_N": 80.0}
@@ -154,8 +154,8 @@ def jump_m(found: solve.TrussPath) -> float:
 
 @pytest.mark.parametrize("load_N", [0.3, 3.0, 30.0])
 def test_load_across_springs_in_line_finds_its_equilibrium(load_N: float) -> None:
-    """Two springs in line do not resist a first displacement across; the sag d follows from
-    2 k (1 - l0 / hypot(l0, d)) d = F."""
+    """Two collinear springs have no transverse stiffness in the reference configuration. The sag d follows from 2 k (1
+    - l0 / hypot(l0, d)) d = F."""
     stiffness, length = 400.0, 0.5
     nodes = [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
              {"name": "M", "position_m": [length, 0.0], "force_N": [0.0, -load_N]},
@@ -171,7 +171,7 @@ def test_load_across_springs_in_line_finds_its_equilibrium(load_N: float) -> Non
 
 
 def test_hinge_that_cannot_turn_is_noted_once() -> None:
-    """Of a triangle on rollers no angle changes but by strain: the hinge sticks whatever its moment is."""
+    """The angles of a triangle on rollers change only by strain: the hinge sticks whatever its friction moment."""
     nodes = [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
              {"name": "B", "position_m": [1.0, 0.0], "fixed": ["y"]}, {"name": "C", "position_m": [2.0, 0.0], "fixed": ["y"]}]
     links = [{"name": "ab", "nodes": ["A", "B"], **STIFFNESS}, {"name": "bc", "nodes": ["B", "C"], **STIFFNESS}]
@@ -183,7 +183,7 @@ def test_hinge_that_cannot_turn_is_noted_once() -> None:
 
 
 def panel(load_N: float) -> dict[str, Any]:
-    """A square with both diagonals, one of them with play: nothing asks it to carry before its clearance closes."""
+    """A square with both diagonals, one of which has play: it carries no force before its clearance closes."""
     corners = {"A": [0.0, 0.0], "B": [1.0, 0.0], "C": [1.0, 1.0], "D": [0.0, 1.0], "J": [1.0, 1.0]}
     fixed = {"A": ["x", "y"], "D": ["x"]}
     nodes = [{"name": name, "position_m": place} | ({"fixed": fixed[name]} if name in fixed else {})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registries of joints and elements of a truss: one declaration per type, from which all else comes."""
+"""The registries of joints and elements of a truss: one declaration per type determines everything else."""
 from __future__ import annotations
 
 import dataclasses
@@ -70,7 +70,8 @@ def test_numbers_have_the_units_of_the_engine(kind: AnyType) -> None:
 
 @each_type
 def test_arrays_are_those_of_the_engine(kind: AnyType) -> None:
-    """Keys of arrays are those of items, but for what a type derives; all arrays of the engine are there."""
+    """Arrays have the names of the keys in case files, except for derived arrays; all arrays of the engine are
+    declared."""
     truss = sj.truss.chain(3).resolve()
     tables = engine_items(truss)["joints" if isinstance(kind, JointType) else "elements"]
     given = tables[kind.section if isinstance(kind, JointType) else kind.items]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a comparison leaves out: nodes of elements that hang slack in the play of their pins, and no others."""
+"""A comparison leaves out nodes of elements that are slack in the play of their pins, and no other nodes."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -17,7 +17,8 @@ PLAY_M = 3e-4
 
 
 def post(change_K: float, **truss: Any) -> dict[str, Any]:
-    """Two legs hold a tip. A post has play at both its ends; heated, it grows less than the tip rises, by 19 um/K."""
+    """Two legs hold a tip. A post to the tip has play at both ends; when heated, it grows by 19 um/K less than the tip
+    rises."""
     places = {"A": [0.0, 0.0], "B": [2.0, 0.0], "tip": [1.0, 1.2], "foot": [1.0, 0.0], "low": [1.0, 0.0], "high": [1.0, 1.2]}
     nodes = [{"name": name, "position_m": place} | ({"fixed": ["x", "y"]} if name in ("A", "B", "foot") else {})
              for name, place in places.items()]
@@ -36,7 +37,7 @@ def solved(document: dict[str, Any]) -> tuple[Any, Run]:
 
 
 def shifted(run: Run, node: int, by_m: float) -> Run:
-    """The run with a node elsewhere, from a tenth to the end."""
+    """The run with one node displaced, from a tenth of the samples to the end."""
     column = run.history["displacement_m"]
     values = column.values.copy()
     values[len(values) // 10:, node, 1] += by_m

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Quasi-static solver of trusses against closed forms and the other reduced models."""
+"""The quasi-static solver of trusses, compared with closed forms and with the other reduced models."""
 from __future__ import annotations
 
 import importlib.util
@@ -38,7 +38,7 @@ def path(document: dict[str, Any], **options: Any) -> solve.TrussPath:
 
 
 def jump_m(found: solve.TrussPath) -> np.ndarray:
-    """Displacement of every node at the end less that at the start [m]."""
+    """Displacement of every node at the end minus that at the start [m]."""
     ends = found.cycle_ends["displacement_m"]
     return ends[-1] - ends[0]
 
@@ -54,8 +54,8 @@ def sticking(document: dict[str, Any], kind: str) -> dict[str, Any]:
 @pytest.mark.parametrize("kind", ["rigid", "elastic"])
 @pytest.mark.parametrize("n", [1, 10, 100, 1000])
 def test_chain_jumps_as_the_closed_form(n: int, kind: str) -> None:
-    """Link i carries the friction of every block beyond it: jump = sum of l_i/(E A)_i sum_{j>=i} f_j. All
-    slide at the end of the cycle: how they stuck does not matter."""
+    """Link i carries the friction of every block beyond it: jump = sum of l_i/(E A)_i sum_{j>=i} f_j. All blocks slide
+    at the end of the cycle, so their sticking has no influence."""
     found = path(sticking(generate.chain(n, cycles=2), kind), locate_events=False, increments_per_branch=1)
     truss = found.truss
     flexibility = truss.links.stress_free_length_m / (
@@ -68,8 +68,8 @@ def test_chain_jumps_as_the_closed_form(n: int, kind: str) -> None:
 
 
 def iwan_platform_m(truss: ResolvedTruss, changes_K: np.ndarray) -> np.ndarray:
-    """Platform of the Iwan stack [m]: every block is a stop operator of the platform's motion, and the heated
-    drive balances their sum. Piecewise linear, solved between its corners."""
+    """Displacement of the platform of the Iwan stack [m]. Each block is a stop operator of it; the sum of their forces
+    balances the heated drive. The equation is piecewise linear, solved between its corners."""
     links = truss.links
     rigidity = links.young_modulus_Pa * links.cross_section_area_m2
     length, expansion = links.stress_free_length_m[0], links.thermal_expansion_per_K[0]
@@ -139,7 +139,7 @@ def theta_rad(found: solve.TrussPath, at: int) -> np.ndarray:
 
 
 def test_umbrella_rib_is_the_elastic_loop() -> None:
-    """Two solvers that share no line: Newton on a general truss, and on the rib's own closed equations."""
+    """Two solvers without common code: Newton's method for a general truss, and the rib's own closed equations."""
     case = load_case(ROOT / "cases" / "umbrella_bias.toml")
     loop = _engine.elastic_loop(umbrella.linkage(case), case.thermal_program(), samples=2000)
     found = path(generate.umbrella(1), increments_per_branch=100)
@@ -167,22 +167,24 @@ def test_ribs_without_coupling_are_one_rib_each() -> None:
                                                                                           contact="rigid"),
 ], ids=["ring", "mast", "umbrella"])
 def test_increment_does_not_matter(document: dict[str, Any]) -> None:
-    """Rigid contacts are holonomic while they roll or slip, so only located changes remain: 1e-9 of a branch."""
+    """Rigid contacts are holonomic while they roll or slip. Only the located events depend on increments: 1e-9 of a
+    branch."""
     few, many = (jump_m(path(document, locate_events=False, increments_per_branch=k)) for k in (4, 64))
     assert few == pytest.approx(many, rel=0, abs=1e-6 * np.abs(many).max())
 
 
 def test_blocks_that_come_to_rest_smoothly_do_not_stall_the_path() -> None:
-    """With elastic contacts blocks in the middle of a chain stop sliding little by little. Some 200 events
-    take 20 solves each."""
+    """With elastic contacts, blocks in the middle of a chain stop sliding gradually. About 200 events take 20 linear
+    solves each."""
     found = path(sticking(generate.chain(20), "elastic"))
     assert found.complete and found.solves < 20 * 20 * len(found.events)
     assert jump_m(found)[-1, 0] == pytest.approx(jump_m(path(generate.chain(20)))[-1, 0], rel=CLOSED_FORM)
 
 
 def test_joints_that_slip_one_after_another_within_an_increment_cost_no_further_steps() -> None:
-    """Without location an increment is a step or two, however many joints change in it. The start, and in each of the
-    two branches the short first step and ten increments are 23 solves; 900 changes would be hundreds."""
+    """Without event detection an increment takes a step or two, however many joints change status. The start and two
+    branches, each with a short first step and ten increments, take 23 solves; 900 separate changes would take hundreds.
+    """
     document = generate.umbrella(300, cable_preload_N=1.0)
     scatter = np.random.default_rng(1)
     for joint in document["revolute"]:
@@ -194,8 +196,8 @@ def test_joints_that_slip_one_after_another_within_an_increment_cost_no_further_
 
 @pytest.mark.parametrize("bays", [20, 40])
 def test_tall_masts_pass_with_every_event_located(bays: int) -> None:
-    """Both joints of a level slide at once near the top, one of them with a force that rounding could take for one
-    that sticks: whoever is let off by rounding starts the next step beyond its bound, and flickers."""
+    """Both joints of a level near the top slide at once. Rounding can make one look sticking. Its next step would then
+    start beyond the friction limit, and its status would alternate."""
     located, quick = (path(generate.mast(bays), locate_events=locate) for locate in (True, False))
     assert located.complete
     # Events of the quick path happen somewhere in increments of 1/50 of a branch.
@@ -230,9 +232,9 @@ def test_energies_of_shipped_cases_balance_at_every_state(case: str) -> None:
 
 
 def test_what_rolls_is_of_fourth_order_in_the_increment() -> None:
-    """What the rule of a step leaves is made up for in the next one: twice the increments, a sixteenth of the error. The
-    reference has eight times the most of them, so that its own error is 1/4096 of theirs. None is cut for the
-    energies."""
+    """Each step corrects the integration error of the step before it. Twice the increments leave a sixteenth of the
+    error. The reference has eight times the increments of the finest path, so its error is 1/4096 of that path's. No
+    step is halved for the energies."""
     ring = load_case(ROOT / "cases" / "trusses" / "ring_12.toml").resolve()
     ends = {k: solve.path(ring, increments_per_branch=k, energy_tolerance=1).states["displacement_m"][-1]
             for k in (20, 40, 320)}
@@ -271,8 +273,8 @@ def test_mechanism_names_its_free_modes() -> None:
 
 
 def column(load_N: float, temperature_change_K: float = 0.0) -> dict[str, Any]:
-    """Two bars in a line, 1 m each, whose middle a spring of 1000 N/m holds across: the bars buckle at
-    N = k L / 2 = 500 N. A load compresses them, or heating between fixed ends."""
+    """Two collinear bars, 1 m each, whose middle node a transverse spring of 1000 N/m holds: they buckle at N = k L / 2
+    = 500 N. A load compresses the bars, or they are heated between fixed ends."""
     made = document("column", "", "closed form", 2, temperature_change_K or 1.0, "triangle", 1, 1.0)
     heated = bool(temperature_change_K)
     load = {} if heated else {"force_N": [-load_N, 0.0]}
@@ -297,7 +299,7 @@ def test_column_under_a_load_buckles_at_the_closed_form() -> None:
 
 
 def test_heated_column_buckles_at_its_temperature() -> None:
-    """N = E A alpha dT / (1 + alpha dT) between fixed ends."""
+    """The force between fixed ends is N = E A alpha dT / (1 + alpha dT)."""
     critical_K = 500 / (7e6 - 500) / 1e-5
     path(column(0.0, critical_K * (1 - NEAR_BUCKLING)))
     highest_K = critical_K * (1 + NEAR_BUCKLING)
@@ -305,9 +307,9 @@ def test_heated_column_buckles_at_its_temperature() -> None:
 
 
 def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
-    """A ring on an elastic bed of k per bay buckles at 2 sqrt(k / bay E I). The generator's spokes make that four
-    times the hoop force H, so a sixteenth of k takes the margin away. Shear of the bays, H over 1.2 MN of a
-    diagonal, lowers it by 2 % of H or 4 % of k."""
+    """A ring on an elastic bed of stiffness k per bay buckles at 2 sqrt(k / bay E I). The generator's spokes make this
+    four times the hoop force H, so a sixteenth of k removes the margin. Shear of the bays, H over 1.2 MN of a diagonal,
+    lowers the buckling force by 2 % of H, or 4 % of k."""
     bays, hoop_force_N = 1000, 25e3  # high, so that buckling and not the strain of the spokes chooses k
 
     def ring(softer: float) -> dict[str, Any]:
@@ -327,8 +329,9 @@ def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
 @pytest.mark.parametrize("bays", [3, 5, 12, 50])
 @pytest.mark.parametrize("change_K", [0.1, 100.0])
 def test_generated_rings_start_in_contact_at_the_drawn_shape(bays: int, change_K: float) -> None:
-    """Links are made for the drawn shape under load with the clearances taken up, so every joint carries half of
-    the hoop force. Left is the Hertz depth, below 6 um up to 4 kN: it takes E A depth / bay, 84 N, away at most."""
+    """Link lengths are chosen so that the loaded ring with closed clearances has the reference configuration: every
+    joint carries half of the hoop force. The Hertz depth, below 6 um up to 4 kN, reduces the force by at most E A depth
+    / bay, 84 N."""
     found = path(generate.ring(bays, temperature_change_K=change_K), increments_per_branch=1, locate_events=False)
     outer = 0.25 / np.sin(np.pi / bays)
     hoop_force_N = max(1000.0, 7e6 * 23.4e-6 * change_K * min(0.25, outer / 2) / outer)
@@ -345,8 +348,9 @@ def slack_notes(found: solve.TrussPath) -> list[tuple[float, list[tuple[str, str
 
 @pytest.mark.parametrize("has_spring", [True, False])
 def test_joint_that_nothing_holds_at_the_start_is_slack(has_spring: bool) -> None:
-    """The flare spring holds both links together, but not against the ground; without it either link turns. Nothing is
-    carried, so every link has its free length, and both centres part along the line of the pins by its expansion."""
+    """The flare spring couples both links but does not hold them against the ground; without it each link can rotate.
+    No forces act, so every link has its free length, and expansion moves the joint centres apart along the line of the
+    pins."""
     made = generate.umbrella(1, bias_rad=0.0, temperature_change_K=10.0)
     if not has_spring:
         del made["torsion_spring"]
@@ -363,8 +367,8 @@ def opened(found: solve.TrussPath) -> np.ndarray:
 
 @pytest.mark.parametrize("contact", ["rigid", "hertz"])
 def test_rib_held_by_springs_starts_open_in_the_middle(contact: str) -> None:
-    """Both springs are free at the drawn shape: the links grow without turning, and journal and bearing part along
-    the frame by eps AC, the play by eps c: they touch where eps (AC - c) = c."""
+    """Both springs are stress-free in the reference configuration. The links grow without rotation; journal and bearing
+    part along the frame by eps AC, the play grows by eps c: they touch when eps (AC - c) = c."""
     made = generate.umbrella(1, bias_rad=0.0, contact=contact)
     made["torsion_spring"].append({"name": "ground", "links": ["AB"], "stiffness_N_m_per_rad": 2.0})
     frame, clearance, expansion = 0.12, 1e-4, 23.75e-6
@@ -388,8 +392,8 @@ def test_rib_held_by_springs_starts_open_in_the_middle(contact: str) -> None:
 
 
 def two_bars(share_of_clearance: float) -> dict[str, Any]:
-    """Two bars under 90 degrees that a load pulls along their middle; the journal at their end plays in a fixed
-    bearing of 100 um. The load is that which leaves the journal at a share of the clearance."""
+    """Two bars at 90 degrees, pulled along their bisector; the journal at their end has 100 um of clearance in a fixed
+    bearing. The load leaves the journal at a given fraction of the clearance."""
     made = document("two_bars", "", "closed form", 2, 100.0, "triangle", 1, 1.0)
     made["node"] += [node("A", (-0.5, 0), "xy"), node("B", (0.5, 0), "xy"), node("O", (0, -0.5), "xy"),
                      node("J", (0, -0.5), force_N=[0.0, -load_N(share_of_clearance * CLEARANCE_M)])]
@@ -407,7 +411,7 @@ OPEN = 5  # of the engine's statuses
 
 
 def load_N(sag_m: float, change_K: float = 0.0) -> float:
-    """Pull of the two bars on their end, this far below where it was drawn [N]."""
+    """Load that displaces the common end of both bars by this distance below its reference position [N]."""
     drawn, now, height = np.hypot(0.5, 0.5), np.hypot(0.5, 0.5 + sag_m), 0.5 + sag_m
     free = drawn * (1 + EXPANSION * change_K)
     return float(2 * 70e9 * AREA_M2 * (now / free - 1) * height / now)
@@ -440,7 +444,8 @@ def test_load_that_brings_the_journal_to_its_bearing_starts_in_contact() -> None
 @pytest.mark.parametrize("increments", [20, 50, 200])
 def test_joint_that_loses_its_contact_is_slack_from_its_temperature_on(
         bias_rad: float, change_K: float, lost_K: float, increments: int) -> None:
-    """The links open or close the flare angle beyond the spring's free one: nothing holds the journal then."""
+    """The links close or open the flare angle beyond the free angle of the spring, so that nothing holds the journal.
+    """
     found = path(generate.umbrella(1, temperature_change_K=change_K, bias_rad=bias_rad),
                  increments_per_branch=increments)
     (lost, joints), = slack_notes(found)
@@ -455,7 +460,7 @@ def test_path_ends_when_progress_says_so() -> None:
 
 
 def wandering_mast() -> dict[str, Any]:
-    """A mast whose 45 latches want to slip in the first step, each of its links as warm as chance has it."""
+    """A mast with 45 latches, all of which would slip in the first step. The temperatures of its links are random."""
     spec = importlib.util.spec_from_file_location("histories", ROOT / "studies" / "bench" / "histories.py")
     assert spec is not None and spec.loader is not None
     histories = importlib.util.module_from_spec(spec)
@@ -472,9 +477,9 @@ def wandering_mast() -> dict[str, Any]:
 
 @pytest.mark.parametrize("blocks", [0, 3000])
 def test_many_joints_that_wander_are_settled_on_few_factorizations(blocks: int) -> None:
-    """Block pivots of the latches of the mast wander, single ones take a factorization each (37 a solve). Where they
-    wander, the step is divided. Blocks on bars of their own beside it, which slip at once and for good, change nothing
-    in that (43 a solve when joints that had ever changed counted among those that wander)."""
+    """On this mast, status changes of many latches at once cycle; single changes take a factorization each (37 per
+    solve). When changes cycle, the step is halved. Blocks on separate bars, which slip at once and permanently, do not
+    affect this (43 per solve when every joint that had ever changed counted as cycling)."""
     mast = wandering_mast()
     for i in range(blocks):
         place = [0.0, -10.0 - i, 0.0]
@@ -490,15 +495,15 @@ def test_many_joints_that_wander_are_settled_on_few_factorizations(blocks: int) 
 
 
 def test_pivots_that_lead_on_are_left_alone() -> None:
-    """A chain of elastic blocks has as many idle pivots as a mast whose pivots wander, but each brings it nearer (288
-    factorizations)."""
+    """A chain of elastic blocks has as many useless active-set changes as a mast whose changes cycle, but each brings
+    the solution nearer (288 factorizations)."""
     chain = path(sticking(generate.chain(200, cycles=2), "elastic"), increments_per_branch=1, locate_events=False)
     assert chain.factorizations < 400
 
 
 def test_quiet_increments_keep_the_factors() -> None:
-    """No joint of this ring changes its branch on its path: steps by factors that are there lead from increment to
-    increment (86 factorizations, when each Newton step made its own)."""
+    """No joint of this ring changes its status along the path. Steps reuse existing factorizations across increments
+    (86 factorizations were needed when each Newton step made one)."""
     found = path(generate.ring(100), increments_per_branch=10, locate_events=False)
     assert len(found.events) == 0 and found.factorizations < found.solves
 
@@ -511,7 +516,7 @@ def spoiled(case: str, section: str, item: int, key: str, value: float) -> dict[
 
 
 def test_soft_bar_does_not_hold_up_a_path() -> None:
-    """Its change of branch is foreseen at the end of whatever step is tried."""
+    """The status change of the soft bar is predicted at the end of any attempted step."""
     told = itertools.count()
     found = path(spoiled("chain_cable", "link", 1, "cross_section_area_m2", 9e-18),
                  progress=lambda share: next(told) < 100_000)
@@ -519,8 +524,8 @@ def test_soft_bar_does_not_hold_up_a_path() -> None:
 
 
 def test_no_step_is_divided_without_end() -> None:
-    """Newton's method finds states only so near to each other that a branch would take millions of steps on one set of
-    statuses: steps that take changes together pass."""
+    """Newton's method converges only for states so close together that a branch would take millions of steps with one
+    set of statuses. Steps that make several changes together succeed."""
     counted = itertools.count()
     found = path(spoiled("ball_tripod", "ball_joint", 0, "friction_coefficient", 1e-320),
                  progress=lambda share: next(counted) < 100_000)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes, links and joints of a truss in files beside its case file, by columns instead of one by one."""
+"""Nodes, links and joints of a truss in table files beside its case file, by columns."""
 from __future__ import annotations
 
 import dataclasses
@@ -27,7 +27,7 @@ MADE: Mapping[str, Callable[[], dict[str, Any]]] = {
 
 
 def same(one: Any, other: Any, where: str = "") -> None:
-    """Hold the arrays of two trusses against each other, to the last bit."""
+    """Check that the arrays of two trusses are equal in all bits."""
     if dataclasses.is_dataclass(one):
         for field in dataclasses.fields(one):
             same(getattr(one, field.name), getattr(other, field.name), f"{where}.{field.name}")
@@ -49,7 +49,8 @@ def beside(document: dict[str, Any], folder: Path) -> Path:
 
 
 def in_hdf5(items: list[dict[str, Any]], path: Path) -> None:
-    """Write items as data sets: texts, rows of texts that end with empty ones, numbers that are NaN where none are."""
+    """Write nodes, links or joints as data sets: texts, rows of texts padded with empty texts, numbers with NaN for
+    missing values."""
     with h5py.File(path, "w") as file:
         for key in {key: None for item in items for key in item}:
             values = [item.get(key) for item in items]
@@ -297,7 +298,7 @@ def test_blocks_of_rows_are_checked_as_all_of_them(
 
 
 def test_items_in_other_units(tmp_path: Path) -> None:
-    """Lists are converted as single numbers are; other units make the same case."""
+    """Units are converted in lists as in single numbers; a case in other units is the same case."""
     document = generate.chain(2)
     path = beside(document, tmp_path)
     before = load_case(path)

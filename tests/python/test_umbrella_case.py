@@ -207,13 +207,13 @@ def test_geometry(cases: Path, name: str) -> None:
 
 
 def test_flat_triangles_keep_their_height() -> None:
-    """Differences of squares would lose it: y = 1.73e-10 m beside lengths of 1 m."""
+    """y = 1.73e-10 m beside lengths of 1 m; a difference of squares would lose this height to rounding."""
     flat = parse_case(minimal(frame=1.0 - 2.0**-53, ab=0.5, bc=0.5))
     assert flat.ideal_position_m[1] == pytest.approx(0.5 * 2.0**-26, rel=1e-6)
 
 
 def minimal(frame: float = 0.12, ab: float = 0.05, bc: float = 0.1, **sections: dict) -> dict:
-    """The least that a case must say, as tomllib would return it."""
+    """The required keys of a case file, as tomllib returns them."""
 
     def link(length: float) -> dict:
         return {"mass_kg": 1.0, "young_modulus_Pa": 70e9, "stress_free_length_m": length,
@@ -260,7 +260,7 @@ def test_clearance_with_expanding_radii() -> None:
 
 
 def test_duration_and_program_of_a_table() -> None:
-    """A table's own times are the times; a period that says otherwise is refused."""
+    """Times in a temperature table are used unchanged; a different period is refused."""
     data = minimal()
     data["thermal"] = {"shape": "table", "cycles": 3, "table_time_s": [0, 30, 90],
                        "table_temperature_change_K": [0, -40, 0]}
@@ -304,7 +304,7 @@ def test_kinds_are_registered(cases: Path) -> None:
 
 
 def test_damaged_files_never_end_in_another_error(cases: Path) -> None:
-    """Whatever stands in a file: the case loads, or one StatejumpError says why not."""
+    """A file with any damage either loads, or a StatejumpError explains in one sentence why not."""
     original = tomllib.loads((cases / "umbrella_bias.toml").read_text())
     values = [0, 1, -1, 1e-300, 1e300, -1e300, float("nan"), float("inf"), 10**400, True, "", "x", "rest", [], [1], {},
               {"a": 1}, 3.5, 1e-3, 1e3, ["0"], tomllib.loads("d = 2021-01-01")["d"]]

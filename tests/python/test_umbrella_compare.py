@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Both models of the umbrella rib, through the command and beside each other."""
+"""Both models of the umbrella rib, run and compared by the command."""
 from __future__ import annotations
 
 import csv

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures 13 to 16: the rules of the verdicts, geometry and statics drawn, files of the command."""
+"""Figures 13 to 16: rules of the verdicts, drawn geometry and statics, files of the command."""
 from __future__ import annotations
 
 import csv
@@ -38,7 +38,7 @@ NOISE = RANDOM.normal(size=(8, 200))
 
 
 def groups(means: list[float], spread: float, values: tuple[float, ...] = (0.0, 0.1, 0.3, 0.5)) -> Groups:
-    """Runs about given means; always the same noise, without a mean of its own."""
+    """Runs with given mean values; their noise is always the same and has zero mean."""
     noise = NOISE - NOISE.mean(axis=1, keepdims=True)
     return Groups(values, tuple(mean + spread * row for mean, row in zip(means, noise)))
 
@@ -230,7 +230,7 @@ def test_reasons_of_measures_follow_their_verdicts() -> None:
 
 
 def test_former_rules_are_told_with_the_numbers_of_the_case() -> None:
-    """What the rules said before they were changed is computed, not remembered."""
+    """The verdicts by the former rules are computed from the runs of the case, not stored."""
     assert "would be *holds*, as it is now. With a monotone fall" in text_of(all_true())
     near = replace(all_true(), end_shift_dem_m=np.array([5e-5, 5e-6]))  # beyond the spread, not beyond ten times of it
     assert "would be *holds in the mean* instead of *holds*" in text_of(near)
@@ -255,7 +255,7 @@ def test_envelope(cases: Path) -> None:
 
 
 def test_static_deflection(cases: Path) -> None:
-    """Damped slow runs without friction end where statics says; rigid links are the soft spring's limit."""
+    """Slow damped runs without friction end in static equilibrium; rigid links are the limit of a soft spring."""
     case = with_values(load_case(cases / "umbrella.toml"), {
         "joint.friction_coefficient": 0.0, "start.mode": "matched", "damping.axial_damping_ratio": 0.1,
         "damping.pin_damping_N_m_s_per_rad": 0.05, "reduced.steps_per_cycle": 100_000, "thermal.period_s": 2.0,
@@ -274,7 +274,7 @@ def test_static_deflection(cases: Path) -> None:
 
 @pytest.fixture
 def tiny(edited: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A case of few runs and steps; the reduced model with other steps stands for YADE."""
+    """A case with few runs and steps; the reduced model with other time steps replaces YADE."""
 
     def execute(case: Any, offset_m: np.ndarray | None = None) -> Samples:
         done = model.integrate(with_values(case, {"reduced.steps_per_cycle": case.dem_settings.steps_per_cycle}), offset_m)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Slow heating, a joint left alone, the energy account over steps, and the same bits every time."""
+"""Slow heating, a joint at constant temperature, the energy account over time steps, reproducibility in all bits."""
 from __future__ import annotations
 
 import math
@@ -218,7 +218,7 @@ def test_pages_name_the_case_file_that_was_given(edited, cases, tmp_path, monkey
 
 
 def test_studies_leave_the_callers_matplotlib_alone():
-    """Neither the backend nor pyplot, which opens windows of its own, is touched by drawing."""
+    """Drawing changes neither matplotlib's backend nor pyplot, which would open windows."""
     program = """
 import sys
 import matplotlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user meets on the first day: warnings of wrong units, names of files, choices that are printed."""
+"""Messages for new users: warnings of wrong units, names of files, printed choices."""
 from __future__ import annotations
 
 import copy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of verdicts by hand: runs that are made up, and what their rows have to say."""
+"""Rows of verdicts, checked by hand on made-up runs."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -42,7 +42,8 @@ SAMPLES, NODES, CYCLES = 10, 11, 3
 
 
 def moved(offsets: dict[tuple[int, int, int], float]) -> np.ndarray:
-    """Displacements of a chain that expands with the temperature, and what some (sample, node, axis) have besides."""
+    """Displacements of a chain that expands with the temperature, plus given displacements at some (sample, node,
+    axis)."""
     share = triangle(SAMPLES, CYCLES)
     found = np.zeros((len(share), NODES, 3))
     found[:, :, 0] = share[:, None] * 1e-3 * np.arange(NODES)

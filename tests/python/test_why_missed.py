@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A comparison that misses a tolerance says why it may, and what to set; setting it helps."""
+"""A comparison that misses a tolerance reports possible reasons and the settings to change; changing them helps."""
 from __future__ import annotations
 
 import re
@@ -26,7 +26,7 @@ def planar(**more: Any) -> dict[str, Any]:
 
 
 def test_slowest_natural_period_of_bars_in_a_row() -> None:
-    """Two masses m on two bars k: ω² = k/m (3 - √5)/2."""
+    """Two masses m on two bars of stiffness k have the lowest ω² = k/m (3 - √5)/2."""
     data = planar(
         node=[{"name": name, "position_m": [x, 0.0], "fixed": fixed}
               for name, x, fixed in (("A", 0.0, ["x", "y"]), ("B", 1.0, ["y"]), ("C", 2.0, ["y"]))],
@@ -41,7 +41,7 @@ def test_slowest_natural_period_of_bars_in_a_row() -> None:
 
 
 def test_a_torsion_spring_holds_what_links_do_not() -> None:
-    """A link of length l on a pin and a torsion spring K: ω² = K/(m/3 l²)."""
+    """A link of length l on a pin with a torsion spring K has ω² = K/(m/3 l²)."""
     data = planar(
         node=[{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]}, {"name": "B", "position_m": [0.0, 2.0]}],
         link=[{"name": "AB", "nodes": ["A", "B"], **LINK}],
@@ -90,7 +90,7 @@ def test_advice_stays_within_what_the_case_allows(allowed_m: float, wanted: str)
 
 
 def test_pads_that_bend_across_are_named() -> None:
-    """A load across the axis of a slider between two nodes: F over the pad's Hertz stiffness."""
+    """A load F across the axis of a slider between two nodes displaces it by F over the pad's Hertz stiffness."""
     load, normal, radius = 40.0, 300.0, 0.02
     data = planar(
         node=[{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},

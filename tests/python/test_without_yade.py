@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A build without YADE: what it refuses, and the wheel that pip makes of it."""
+"""A build without YADE: the commands that it refuses, and the wheel that pip makes of it."""
 from __future__ import annotations
 
 import base64
@@ -32,7 +32,7 @@ REFUSED = (f"YADE is missing: {WITHOUT_YADE}; for 'dem' and 'compare' build with
 
 @pytest.fixture(autouse=True)
 def skipped_without_yade(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of all tests these do not need YADE to test what needs it."""
+    """Override the fixture that skips tests without YADE; these tests need no YADE."""
     monkeypatch.setattr(_paths, "YADE", "")
 
 
@@ -57,7 +57,7 @@ def test_the_reduced_model_needs_no_yade(statejump: Callable[..., Outcome]) -> N
 
 
 def test_pip_brings_what_debian_brings() -> None:
-    """The dependencies of the wheel are the packages of the group run, but YADE."""
+    """The dependencies of the wheel are the packages of the Debian group "run", except YADE."""
     debian = {name.removeprefix("python3-") for name in (REPOSITORY / "scripts/packages/run.txt").read_text().split()}
     pip = {re.split("[<>=~! ]", entry)[0] for entry in statejump_wheel.project()["dependencies"]}
     names = {"attrs": "attr", "vtk": "vtk9"}
@@ -82,7 +82,7 @@ def test_tools_that_are_there_are_not_fetched(monkeypatch: pytest.MonkeyPatch, t
     ("/nowhere/python3", "STATEJUMP_PYTHON=/nowhere/python3 does not exist; set it to"),
     ("{folder}/old", "{folder}/old is Python 3.10.9, needed is 3.11 or later; set -DSTATEJUMP_PYTHON=")])
 def test_an_unfit_python_is_refused_by_name(tmp_path: Path, python: str, sentence: str) -> None:
-    """The check of the build, in a project of its own that finds a Python which calls itself old."""
+    """The build's check of the version, in a separate CMake project with a Python that reports an old version."""
     old = tmp_path / "old"
     old.write_text("#!/bin/sh\n")
     old.chmod(0o755)
@@ -102,7 +102,7 @@ def test_the_back_end_is_that_of_the_project() -> None:
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel of this build's engine: configured as pip would, and not compiled again."""
+    """The wheel of this build's engine, configured as by pip but without a new compilation."""
     build, folder = tmp_path_factory.mktemp("build"), tmp_path_factory.mktemp("wheel")
     statejump_wheel.configure(build)
     for module in (BUILT / "statejump").glob("_engine*.so"):

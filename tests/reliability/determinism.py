@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The reduced model of every shipped case by other compilers, optimisations and numbers of threads: the same bits.
+"""Checks that the reduced model of every shipped case gives the same bits with any compiler, optimisation and number of
+threads.
 
     determinism.py FOLDER [--beside build/python] [--compiler clang++] [--level=-O2] [--case NAME ...]
 
-Builds engine and Python package below FOLDER once for each of GCC and Clang at -O0, -O2 and -O3, runs the shipped cases
-with each, and once more with two threads for whatever library would take them, and prints a row for every case: the
-hash of all its numbers by the first build, and which of the others give another one. Exit status 1: one does. A package
-that is built already comes first with ``--beside``, by whatever compiler it was built. What is built and run already is
-kept.
+Builds engine and Python package below FOLDER with GCC and Clang at -O0, -O2 and -O3. Runs the shipped cases with each
+build, and once more with two threads in libraries that use threads. Prints a row for every case: the hash of all its
+numbers by the first build, and the builds with a different hash. Exit status 1: some hash differs. ``--beside`` gives
+an existing package, which becomes the first build. Existing builds and results are kept.
 """
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ print(json.dumps(found))
 
 
 def call(*words: object, **environment: str) -> str:
-    """Run a command; what it says, or the end of the campaign."""
+    """Run a command and return its output; if it fails, end the campaign."""
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False,
                           env={**os.environ, **environment})
     if done.returncode != 0:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a command many times without starting Python for each: a server that has loaded what the command loads forks
-for every run. The fork goes through the command's own launcher, in a group of its own, and ends like it.
+"""Runs a command many times without starting Python each time. A server, which has loaded the modules of the command,
+forks for every run. The fork executes the command's own launcher, in a separate process group, and exits like the
+command.
 
     forkserver.py LAUNCHER        requests and answers are lines of JSON on standard input and output
 """
@@ -26,18 +27,18 @@ LOADED = "FORKSERVER_LOADED"  # file that gets what a run has loaded, and from w
 
 @dataclass(frozen=True)
 class Ended:
-    """How a run ended: its status as of ``subprocess``, and what it said on standard error."""
+    """End of a run: its status as in ``subprocess``, and its standard error."""
 
     returncode: int
     stderr: str
 
 
 class Forkserver:
-    """Starts the server and asks it. A context manager.
+    """Context manager that starts the server and sends requests to it.
 
     :param launcher: the command, a Python program
-    :param environment: of the server and of all runs
-    :param folder: gets what runs say
+    :param environment: variables of the server and of all runs
+    :param folder: receives the output of runs
     """
 
     def __init__(self, launcher: Path, environment: Mapping[str, str], folder: Path) -> None:
@@ -66,7 +67,7 @@ class Forkserver:
         return int(json.loads(self._server.stdout.readline()))
 
     def load(self, folder: Path, words: Sequence[str]) -> None:
-        """Run the command once, and let the server load what it has loaded."""
+        """Run the command once in the server, which thereby loads its modules."""
         names = folder / "loaded"
         self.run(folder, words, {LOADED: str(names)})
         self._ask({"load": json.loads(names.read_text(encoding="utf-8"))})
@@ -77,9 +78,9 @@ class Forkserver:
     ) -> Ended:
         """Run the command.
 
-        :param folder: where it is run
-        :param more: variables besides those of the server
-        :param kill_after_s: when its whole group is killed
+        :param folder: working folder
+        :param more: environment variables besides those of the server
+        :param kill_after_s: time until its process group is killed [s]
         """
         pid = self._ask({"folder": str(folder), "words": list(words), "more": dict(more), "said": str(self._said)})
         if kill_after_s is not None:

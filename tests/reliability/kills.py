@@ -1,18 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaign of kills: whatever ends a command, its results are complete or absent, never half.
+"""Kills commands and checks that their results are complete or absent, never partial.
 
     kills.py --command build/bin/statejump --python build/python --library build/.../failing_calls.so
         [--most N] [--instants N] [--only NAME ...] [--seed N]
 
-Every command runs over results of an older run. It is killed at random instants; killed before each of its calls that
-write, sync, rename, make or remove something below the results; and each of these calls fails once with ENOSPC and once
-with EIO. Then the next run opens the folder, as it does by itself, and what is there must be the files of the old run
-or those of the new one, byte by byte, and nothing besides; the journal of a campaign must hold whole samples. The
-status must be one of those in docs/reference/mistakes.md, without a traceback.
+Every command runs in a folder with results of an older run. It is killed at random instants, and before each of its
+calls that write, sync, rename, make or remove something in the results. Each of these calls also fails once with ENOSPC
+and once with EIO. Then the next run opens the folder as usual. The folder must hold exactly the files of the old run or
+of the new run, byte by byte, and no others; the journal of a campaign must hold complete samples. The exit status must
+be in docs/reference/mistakes.md, without a traceback.
 
-Starting Python takes most of a short run: nine of ten are forks of a server that has loaded what the command loads
-(forkserver.py), every tenth starts the command itself.
+A short run spends most of its time on starting Python. Therefore nine of ten runs are forks of a server that has loaded
+the command's modules (forkserver.py); every tenth run starts the command itself.
 """
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ STARTED = 10  # every so many runs the command itself is started
 
 @dataclass
 class Subject:
-    """A command, and the folder that gets its results. ``{case}`` in the words is the case file."""
+    """A command and the folder of its results. ``{case}`` in the words of the command stands for the case file."""
 
     name: str
     words: list[str]
@@ -94,8 +94,8 @@ class Campaign:
         self.server.__exit__()
 
     def _yade(self) -> Path:
-        """Return a command that stands for YADE: it gives the histories of the reduced model for those of the DEM, for
-        what is tested are the files."""
+        """Return a command that replaces YADE: it returns histories of the reduced model as those of the DEM, because
+        only the files are tested."""
         script = self.canned / "yade"
         script.write_text(f'#!/bin/sh\ncp {self.canned}/dem.samples "$STATEJUMP_OUTPUT"\n'
                           'echo "{}" > "$STATEJUMP_OUTPUT.json"\necho \'STATEJUMP {"progress": 1.0}\'\n')
@@ -117,7 +117,7 @@ class Campaign:
         return script
 
     def prepared(self, subject: Subject, old: bool) -> Path:
-        """Return a folder with the case, of the older run or of the new one."""
+        """Return a folder with the case file of the older run or of the new run."""
         folder = Path(tempfile.mkdtemp(dir=self.root))
         text = (REPOSITORY / "cases" / subject.case).read_text(encoding="utf-8")
         campaign = (REPOSITORY / "cases/campaigns/table1_friction.toml").read_text(encoding="utf-8")
@@ -135,7 +135,8 @@ class Campaign:
         return folder
 
     def run(self, folder: Path, words: list[str], kill_after_s: float | None = None, **doom: object) -> Ended:
-        """Run the command: by the server, every tenth time by itself. Its group is killed after so many seconds."""
+        """Run the command through the server, every tenth time directly. Its process group is killed after the given
+        seconds."""
         more = {name: str(value) for name, value in doom.items()}
         if more:
             more["DOOM_FOLDER"] = str(folder / "results")
@@ -154,12 +155,12 @@ class Campaign:
         return Ended(process.returncode, said.read_text(encoding="utf-8", errors="replace"))
 
     def over(self, folder: Path, subject: Subject, old: Path) -> None:
-        """Put the results of the older run where the next run works."""
+        """Put the results of the older run into the folder of the next run."""
         shutil.rmtree(folder / "results", ignore_errors=True)
         shutil.copytree(old / "results", folder / "results")
 
     def judged(self, subject: Subject, folder: Path, known: dict[str, dict[str, str]], how: str) -> None:
-        """Open the folder as the next run does, and hold what is there against the older and the new run."""
+        """Open the folder as the next run does, and compare its files with those of the older and the new run."""
         from statejump.core.errors import StatejumpError
         from statejump.core.results_folder import Results
 
@@ -182,7 +183,7 @@ class Campaign:
                 subject.faults.append(f"{how}: {refused}")
 
     def check_journal(self, folder: Path) -> None:
-        """Open a journal. :raises Unreadable: a line before its end is damaged"""
+        """Open a campaign's journal. :raises Unreadable: a line other than the last one is damaged"""
         from statejump.campaign.campaign_file import load_campaign
         from statejump.campaign.journal import Journal
         from statejump.core.errors import Unreadable
@@ -198,7 +199,7 @@ class Campaign:
                 raise
 
     def of(self, subject: Subject, most: int, instants: int, generator: random.Random) -> None:
-        """Run the whole campaign of a command, at most so often of each sort."""
+        """Run all tests of a command, with at most the given number of each type."""
         old, new = self.prepared(subject, True), self.prepared(subject, False)
         known = {}
         words = subject.words
@@ -258,7 +259,7 @@ class Campaign:
 
 
 def contents(folder: Path) -> dict[str, str]:
-    """Return the digests of the files below a folder by their names; of what is of the day only that it is there."""
+    """Return the digests of the files below a folder by name; for files that contain the date, only their presence."""
     found = {}
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.name != "samples.journal":
@@ -268,7 +269,8 @@ def contents(folder: Path) -> dict[str, str]:
 
 
 def chosen(calls: int, most: int, generator: random.Random) -> Iterator[int]:
-    """Yield which calls are made to fail: all, or so many of them; the last ones, which publish, among them."""
+    """Yield the calls that are made to fail: all, or the given number of them, always with the last ones, which
+    publish."""
     if calls <= most:
         yield from range(1, calls + 1)
         return
@@ -289,7 +291,7 @@ def count(subject: Subject, sort: str) -> None:
 
 
 def main() -> int:
-    """Run the campaign and print what was found; 1 if anything was."""
+    """Run the campaign and print the faults found; return 1 if there are any."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("command", "python", "library"):
         parser.add_argument(f"--{name}", type=Path, required=True)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Saves and goes on, or loads and goes on; started by restarts.py in YADE: ``restart_scenes.py write|read PLAN``.
+"""Saves and continues scenes, or loads and continues them; restarts.py runs ``restart_scenes.py write|read PLAN`` in
+YADE.
 
-PLAN is a JSON file: ``steps`` to go on, and ``saves``, each with case, law, first (steps before) and file.
+PLAN is a JSON file: ``steps`` to run after saving or loading, and ``saves``, each with case, law, ``first`` (steps
+before saving) and file.
 """
 import hashlib
 import json
@@ -17,7 +19,7 @@ TOUCHING_WITHIN = 3000  # steps
 
 
 def rattling(law, stepper):
-    """A journal that rattles in its bearing, in cycles of the temperature."""
+    """A journal that rattles in its bearing under a cyclic temperature."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3, cycles=5)
     body(
@@ -45,7 +47,7 @@ def rolling(law, stepper):
 
 
 def bored(friction):
-    """A journal that rattles in a bore of triangles with lobes; laws are its own."""
+    """A journal that rattles in a lobed bore of triangles, with fixed laws."""
     def build(_law, stepper):
         reset()
         body(
@@ -61,7 +63,7 @@ def bored(friction):
 
 
 def mixed_scene(*kind):
-    """Links, torsion springs, journal, slider with two contacts; laws are its own."""
+    """A scene of links, torsion springs, a journal, and a slider with two contacts, with fixed laws."""
     def build(_law, stepper):
         mixed.scene(*kind)
         put(stepper)
@@ -95,8 +97,8 @@ def touching():
 
 
 def digest():
-    """Return the digest of every number of the scene; sums of energy depend on the order of contacts, which loading
-    may change, and are left out."""
+    """Return the digest of all numbers of the scene. Energy sums are left out: they depend on the order of contacts,
+    which loading may change."""
     found = mixed.state()
     del found["energy"]
     return hashlib.sha256(json.dumps(found, sort_keys=True, default=list).encode()).hexdigest()

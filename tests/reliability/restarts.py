@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaign of restarts: a run in YADE that is saved in mid contact and loaded in another process goes on as the run
-that was not interrupted, bit for bit.
+"""Checks restarts: a run in YADE that is saved during contact and loaded in another process continues like the
+uninterrupted run, bit for bit.
 
     restarts.py --python build/python [--saves N] [--steps N] [--threads N ...]
 
@@ -29,8 +29,8 @@ LAWS = {"normal": "normalLaw", "dissipation": "dissipationLaw", "friction": "fri
 
 
 def scenes_of(python: Path) -> list[tuple[str, dict[str, Any]]]:
-    """Return cases and their laws: every law of the catalogue with the others at their defaults, and none, which is
-    Hertz and Mindlin; a ball has no axis, mixed scenes and bores have laws of their own."""
+    """Return cases and their laws: each law of the catalogue with default other laws, and Hertz and Mindlin without a
+    name. A ball has no axis, so some laws are left out; mixed scenes and bores have fixed laws."""
     sys.path.insert(0, str(python))
     from statejump import _engine
 
@@ -60,7 +60,7 @@ def run_yade(python: Path, threads: int, action: str, plan: Path) -> list[Any]:
 
 
 def main() -> int:
-    """Run the campaign and print what was found; 1 if anything was."""
+    """Run the campaign and print the faults found; return 1 if there are any."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", type=Path, required=True)
     parser.add_argument("--saves", type=int, default=100)

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Soak: hours of use in one process leave nothing behind.
+"""Soak test: hours of use in one process leak no memory, files or threads.
 
     soak.py --python build/python [--minutes M]
 
-A round takes every kind of case through the public interface: reduced models, statics, comparison of result files,
-the report, export, answers, a campaign; refused input as well. After each round memory, open files, threads and what
-is in the folder for temporary files are counted. Memory may grow while caches fill, in the first half; what the second
-half adds to the most of the first must be below what it would be if a round left SLACK_BYTES behind, and below
-LARGEST_BYTES in all. Pages that the allocator holds though nothing is in them are given back before they are counted,
-and it is the most that counts, since pieces of others come and go; pages of files do not count, since the system drops
-and reads them as it likes. The others must be those after the first round.
+A round uses every kind of case through the public interface: reduced models, statics, comparison of result files, the
+report, export, answers, a campaign; also refused input. After each round the test counts memory, open files, threads
+and temporary files. In the first half memory may grow, because caches fill. The maximum of the second half may exceed
+that of the first by less than SLACK_BYTES per round, and by less than LARGEST_BYTES in all. Empty pages of the
+allocator are released before counting. Maxima are compared, because the memory of single rounds varies. Pages of files
+do not count, because the system drops and reads them at any time. Numbers of files and threads must stay those of the
+first round.
 """
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ROUNDS_PER_CLUSTER = 8
 
 
 def rounds(folder: Path) -> Callable[[int], None]:
-    """Return what a round with a number does; files go to the folder, over those of the round before."""
+    """Return the function of a round with the given number; its files overwrite those of the round before."""
     import statejump as sj
     from statejump.cli import main
 
@@ -88,7 +88,7 @@ def _line(found: list[dict[str, int]]) -> str:
 
 
 def main() -> int:
-    """Use the package for so long and print what was counted; 1 if anything is left behind."""
+    """Use the package for the given time and print the counts; return 1 if anything leaks."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", type=Path, required=True, help="the built package")
     parser.add_argument("--minutes", type=float, default=30.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/decks.py: a row for every deck, one cause each, and displacements beside those of CalculiX."""
+"""scripts/decks.py: one row per deck with a single cause of failure, and displacements compared with CalculiX."""
 from __future__ import annotations
 
 import os

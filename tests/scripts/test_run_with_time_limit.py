@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/run_with_time_limit.sh: when a check runs, when it is skipped and what is said then, when it fails."""
+"""scripts/run_with_time_limit.sh: when a check runs, when it is skipped and with which message, when it fails."""
 from __future__ import annotations
 
 import os

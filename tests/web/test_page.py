@@ -23,7 +23,7 @@ def _run(*command: object, folder: Path) -> None:
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with a page of each case, one of the first two, and pages of answers about trusses."""
+    """Folder with a report page of each case, one of the first two cases, and pages with results of `truss answers`."""
     folder = tmp_path_factory.mktemp("pages")
     statejump = os.environ["STATEJUMP_COMMAND"]
     for case in CASES:

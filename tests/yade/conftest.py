@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Starts YADE on the scripts beside this file; each prints one line, ``RESULT`` and JSON."""
+"""Starts YADE on the scripts beside this file; each script prints one line, ``RESULT`` and JSON."""
 from __future__ import annotations
 
 import json
@@ -25,7 +25,7 @@ G_STAR = 70e9 / (4 * (2 - 0.3) * (1 + 0.3))
 def yade(
     script: Path, *arguments: str, threads: int = 1, environment: dict[str, str] | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Run ``yade -n -x script`` with the plugin of this build and return what it printed."""
+    """Run ``yade -n -x script`` with the plugin of this build; return the output."""
     paths = [PLUGIN_DIR, str(HERE / "scripts"), *(str(REPOSITORY / "yade_scripts" / part) for part in ("examples", "runner"))]
     return subprocess.run(
         ["yade", "-n", "-x", f"-j{threads}", str(script), *arguments],
@@ -55,7 +55,8 @@ def result_of(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
 
 
 def check_hertz(row: dict[str, Any], radii: tuple[float, float], radius: float, accuracy: float) -> None:
-    """Check one row of the scripts' ``pressed``: radii, Hertz's force against the direction, both stiffnesses."""
+    """Check one row of the scripts' result ``pressed``: radii, Hertz force, its direction, normal and tangential
+    stiffness."""
     assert row["radii"] == pytest.approx(radii, rel=4 * EPS)
     expected = 4 / 3 * E_STAR * sqrt(radius) * row["depth"] ** 1.5
     for component, along in zip(row["force"], row["direction"]):
@@ -68,7 +69,7 @@ def check_hertz(row: dict[str, Any], radii: tuple[float, float], radius: float, 
 
 @pytest.fixture(scope="session")
 def run_script() -> Callable[..., dict[str, Any]]:
-    """Return a function that runs a script of ./scripts; every different call runs once."""
+    """Return a function that runs a script of ./scripts; calls with equal arguments run it only once."""
     known: dict[Any, dict[str, Any]] = {}
 
     def run(name: str, *arguments: str, threads: int = 1) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""O.load of what another YADE saved ends with a sentence; YADE's own failures pass as they are."""
+"""O.load of a file saved by another YADE ends with a clear message; YADE's own errors are unchanged."""
 import pytest
 
 

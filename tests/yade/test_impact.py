@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ball on ball, both free: Hertz, momenta, published impacts of spheres; the example by itself.
+"""Impact of two free balls: Hertz's law, momentum, published impacts of spheres; the example script.
 
-Readings are of figures in Chung and Ooi, Granul. Matter 13, 2011, to about one per cent of their scales.
+Published values are read from figures of Chung and Ooi, Granul. Matter 13, 2011, to about one per cent of full scale.
 """
 from math import radians, tan
 
@@ -102,7 +102,7 @@ def test_equal_spheres_with_opposite_spins_do_not_rub(seen):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("metal", RESTITUTION)
 def test_published_oblique_impact_of_unequal_spheres(seen, law, metal):
-    """Test 8: by tests/yade/scripts/impact.py at tangents of 5 to 85 degrees; readings from 85 down."""
+    """Test 8 with tangents of the impact angle of 5 to 85 degrees; published values are sorted from 85 degrees down."""
     along, normal = np.array(seen["test_8"][law][metal])[::-1].T
     read = np.array(RESTITUTION[metal])
     assert np.all(np.abs(normal + 0.5) < 2e-3)
@@ -115,7 +115,8 @@ def test_published_oblique_impact_of_unequal_spheres(seen, law, metal):
 
 @pytest.mark.parametrize("metal", RESTITUTION)
 def test_published_oblique_impact_has_dashpots_along_the_surface(seen, metal):
-    """Where it sticks the published spheres hardly rebound along the surface: the dashpots of that code did it."""
+    """If the contact sticks, the published spheres hardly rebound tangentially: the dashpots of that code cause this.
+    """
     read = np.array(RESTITUTION[metal])
     away = {
         (law, scene): np.sqrt(np.mean((np.array(seen[scene][law][metal])[::-1, 0] - read) ** 2))

@@ -15,7 +15,7 @@ def seen(run_script):
 
 
 def root_of(function, low, high):
-    """Root of a function of one sign change, by bisection to the last bit."""
+    """Root of a function with one sign change, by bisection to the last bit."""
     rising = function(high) > 0
     for _ in range(200):
         middle = 0.5 * (low + high)
@@ -173,7 +173,7 @@ def ratio_of(name, restitution):
 
 
 def true_restitution(a):
-    """Root e' of a - ln(1 + a) = -a e' - ln(1 - a e')."""
+    """Restitution e' that solves a - ln(1 + a) = -a e' - ln(1 - a e')."""
     if a == 0:
         return 1.0
     lost = a - log1p(a)

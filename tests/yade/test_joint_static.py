@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Revolute joint and slider at prescribed positions against closed forms (Table 2)."""
+"""Revolute joint and slider (Table 2 of the paper) at prescribed positions, compared with closed forms."""
 from math import sqrt
 
 import pytest

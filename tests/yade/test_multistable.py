@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""yade_scripts/examples/multistable.py: released joints stay where the friction cone says, and only there."""
+"""yade_scripts/examples/multistable.py: released joints rest exactly where the friction cone predicts it."""
 import csv
 import re
 from math import atan, degrees
@@ -44,7 +44,7 @@ def test_every_case_follows_the_cone(seen):
 
 @pytest.mark.parametrize("case", ["circle", "sphere"])
 def test_prediction_and_motion_are_told_apart_clearly(seen, case):
-    """Independent of the script's own verdict: from the angles and the distances moved."""
+    """The check uses angles and distances moved, not the verdict of the script."""
     found = rows(seen[0], case)
     inside = [r for r in found if float(r["angle_to_force_deg"]) < CONE - 0.3]
     outside = [r for r in found if float(r["angle_to_force_deg"]) > CONE + 0.3]
@@ -58,7 +58,7 @@ def test_prediction_and_motion_are_told_apart_clearly(seen, case):
 
 
 def test_three_parts_on_a_bump_and_in_the_hollows_beside_it(seen):
-    """From the places in their order around the wall and what they did, not the script's count."""
+    """The check uses the order of the positions around the wall and their results, not the count of the script."""
     found = rows(seen[0], "three_hollows")
     stayed = [i for i, row in enumerate(found) if row["seen"] == "stayed"]
     runs = [[stayed[0]]]

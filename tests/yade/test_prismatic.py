@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sliders between two bodies: law, energy, stable step, sentences. Both loops and saving: test_stepper.py."""
+"""Prismatic joints between two bodies: law, energy, stable step, messages. test_stepper.py tests both loops and saving.
+"""
 import re
 
 import pytest

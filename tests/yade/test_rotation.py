@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How YADE turns aspherical bodies changed between its versions; none of ours is one."""
+"""YADE's versions rotate aspherical bodies differently; no body of the plugin is aspherical."""
 import pytest
 
 

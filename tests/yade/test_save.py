@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""O.save and O.load: a resumed run is the same run, bit for bit; energies, which are sums over
-contacts in the order of YADE's container, to the rounding of another order."""
+"""O.save and O.load: a resumed run equals the uninterrupted run bit for bit. Only energies differ by rounding, because
+they are sums over contacts in the order of YADE's container."""
 import pytest
 from conftest import EPS
 
@@ -50,7 +50,7 @@ def test_saved_state_of_the_new_classes(written):
 
 
 def assert_same(found, expected):
-    """Loading may order the contacts anew: 5 of them in each of 700 steps, added up otherwise."""
+    """Loading may change the order of contacts, and with it the rounding of sums of 5 contacts in 700 steps."""
     rounding = 5 * 700 * EPS
     assert found["energy"].keys() == expected["energy"].keys()
     for name, energy in expected["energy"].items():

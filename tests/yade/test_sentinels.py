@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""No value that may occur stands for another meaning; failures are raised, and call bodies by their names."""
+"""No valid value of a quantity serves as a special marker; failures are raised and name the bodies."""
 from __future__ import annotations
 
 import pytest
@@ -17,7 +17,7 @@ def test_contact_begins_once_whatever_its_speed(seen, speed):
 
 
 def test_guide_planes_raise_failures(seen):
-    """Known to those who record them: no second report, and no stop that outlives the scene's run."""
+    """GuidePlanes raises a failure once; it neither reports it again nor leaves a stop set for later runs."""
     kind, text, stop = seen["guided"]
     assert (kind, text) == ("RuntimeError", "time_step_unstable O.dt = 0.001 (contact 0 1)")
     assert stop == 0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""No run goes on with a number that is none: the first step that would use it ends with a sentence, the JointStepper at
-the same step with the same one."""
+"""No run continues with an invalid number: the first step that would use it ends with a message. The JointStepper ends
+at the same step with the same message."""
 import re
 from math import pi, sin
 
@@ -53,7 +53,7 @@ AT_START = [name for name in FAULTS if "contact" not in FAULTS[name]]
 
 
 def part_of(name):
-    """Return a fixture: what a part of the script found, or that it failed, once."""
+    """Return a fixture that runs a part of the script once and gives its result."""
     @pytest.fixture(scope="module", name=name)
     def found(run_script):
         return run_script("silence.py", name)
@@ -66,14 +66,14 @@ lengths, good, setters, without_our_engines = map(part_of, ("lengths", "good", "
 
 
 def assert_said(found, name, steps):
-    """Same words at the same step both ways: the quantity, its body, the time and the temperature."""
+    """Check that both loops end at the same step with the same message: quantity, body, time and temperature."""
     ordinary, stepper = found[name]
     assert stepper == ordinary
     assert_told(ordinary, name, steps)
 
 
 def assert_told(found, name, steps):
-    """The quantity and its part, and one sentence with the time and the temperature, at one of these steps."""
+    """Check the error at one of these steps: its quantity and part, and time and temperature in its message."""
     kind, text, step, fault, _ = found
     assert kind == "RuntimeError"
     wanted = f"{'law_not_finite' if name == 'kept force' else 'not_allowed'} {FAULTS[name]}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Table 1 scene (1-D clearance joint) against the closed forms, in a short orbit."""
+"""The scene of the paper's Table 1 (1-D clearance joint) in a short orbit, compared with the closed forms."""
 import pytest
 
 K = 70e9 * 9e-6 / 0.5

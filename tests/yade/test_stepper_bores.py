@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""JointStepper in bores of triangles: the same steps as YADE's loop makes, bit for bit, and the same words."""
+"""JointStepper in bores of triangles: same steps as YADE's loop, bit for bit, and the same messages of failures."""
 import pytest
 
 SCENES = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time steps and wrong use: what is promised holds, what is wrong is said."""
+"""Time steps and misuse: the documented stability limits hold, and mistakes are reported."""
 from math import sqrt
 
 import pytest

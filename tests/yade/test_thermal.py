@@ -15,7 +15,7 @@ def seen(run_script):
 
 
 def expected_change(shape, t):
-    """Temperature change of two cycles of one second with 80 K, or of the table."""
+    """Temperature change of two cycles of 1 s with an amplitude of 80 K, or of the table."""
     if t >= 2:
         return 0.0
     tau = t % 1.0

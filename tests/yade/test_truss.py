@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What trusses in space need: guide planes and torsion springs in planes of any direction."""
+"""Features for spatial trusses: guide planes, and torsion springs in planes of any orientation."""
 import pytest
 
 EPS = 2.0**-52

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YADE's own 3-D view draws all our shapes. Needs an X server without a screen."""
+"""YADE's own 3-D view draws all shapes of the plugin. Needs an X server without a screen."""
 import os
 import shutil
 import subprocess
@@ -30,7 +30,7 @@ def pictures(tmp_path_factory):
 
 
 def pixels(picture, channel, other, least=0.2):
-    """Pixels in which one colour exceeds another, away from YADE's coloured axes and text."""
+    """Pixels in which one colour exceeds another, outside of YADE's coloured axes and text."""
     picture = picture[110:500, 120:]
     return picture[:, :, channel] - picture[:, :, other] > least
 

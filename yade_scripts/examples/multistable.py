@@ -4,13 +4,12 @@
     yade -n -x yade_scripts/examples/multistable.py             # table; CSV and figure in results/multistable
     FOLDER=out CASES=circle,sphere yade -n -x yade_scripts/examples/multistable.py
 
-A journal in a bearing under a constant force F touches the wall. It rests there if the reaction -F is
-inside Coulomb's cone, within atan(mu) of the wall's normal N on the free side. Every such position is a
-stable state.
+A journal in a bearing under a constant force F touches the wall. It rests there if the reaction -F is inside Coulomb's
+cone, within atan(mu) of the wall's normal N, which points to the journal. Every such position is a stable state.
 
-The script releases many joints at once, far from each other. Each starts at rest at another position of
-its wall, at the depth that carries the normal part of F. Journals inside the cone stay; all others leave.
-The journals cannot rotate, like pins fixed to a link; a free one would roll.
+The script releases many joints at once, far from each other. Each joint starts at rest at another position of its wall,
+at the depth that carries the normal part of F. Journals inside the cone stay; all others leave. The journals cannot
+rotate, like pins fixed to a link; a free journal would roll.
 
 A convex wall has each normal once, so its stable states are connected (docs/theory/rest_sets.md). The wall
 of the case three_hollows is not convex, but less curved than the journal, and the force points to a bump.
@@ -47,7 +46,7 @@ def depth_under(force, effective):
 
 
 def creep(effective):
-    """Return the tangential displacement of the contact at the friction limit [m]: mu F / k_t."""
+    """Return the tangential displacement [m] of the contact when it reaches the friction limit: mu F / k_t."""
     contact_radius = sqrt(effective * depth_under(load, effective))
     return friction * load / (8 * shear_modulus * contact_radius)
 
@@ -94,8 +93,9 @@ def sphere():
 
 
 def lobed(name, waves, amplitude, towards, journal=R1, count=600):
-    """Journal in a bore of triangles whose radius is R2 + amplitude cos(waves angle), under a force towards an angle
-    [rad]: positions at equal angles of the wall; normals and curvatures are those of the formula, not of the mesh."""
+    """Journal in a bore of triangles with the radius R2 + amplitude cos(waves angle), under a force towards an angle
+    [rad]. Positions are at equal angles of the wall; normals and curvatures are those of the formula, not of the mesh.
+    """
 
     def wall(angle):
         r = R2 + amplitude * cos(waves * angle)
@@ -179,7 +179,8 @@ def release(case):
 
 
 def wrong(case, beyond):
-    """Return the number of joints that differ from the prediction, beyond or within 1 degree of the cone's edge."""
+    """Return the number of joints that differ from the prediction, more (``beyond``) or less than 1 degree from the
+    cone's edge."""
     return sum(
         (row["predicted"] == "stays") != (row["seen"] == "stayed")
         and (abs(row["angle_to_force_deg"] - degrees(cone)) > 1) == beyond
@@ -188,7 +189,7 @@ def wrong(case, beyond):
 
 
 def parts(case, key, value):
-    """Return runs of consecutive positions around the wall whose rows have a value, as lists of indices."""
+    """Return runs of consecutive positions around the wall whose rows have the given value, as lists of indices."""
     chosen = [row[key] == value for row in case.rows]
     runs = []
     for first in (i for i, here in enumerate(chosen) if here and not chosen[i - 1]):
@@ -220,7 +221,7 @@ def table(cases):
 
 
 def draw(cases, folder):
-    """Plot the positions, coloured by result, with the predicted set behind them."""
+    """Plot the positions, coloured by result, over the predicted set."""
     import matplotlib
 
     matplotlib.use("Agg")

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recording of joints and links for ParaView. Imported by scripts that run under ``yade``.
+"""Records joints and links for ParaView. Imported by scripts that run under ``yade``.
 
     from paraview import ParaViewRecorder
     recorder = ParaViewRecorder("out/umbrella-", program=orbit)
     O.engines = [..., PyRunner(command="recorder.write()", iterPeriod=1000), NewtonIntegrator(...)]
 
-Files are named as those of YADE's VTKRecorder, ``<prefix>joints.<iteration>.vtp``, with one
-``<prefix>joints.vtp.series`` each that gives ParaView the true times:
+Files are named as by YADE's VTKRecorder, ``<prefix>joints.<iteration>.vtp``. For each type of file a
+``<prefix>joints.vtp.series`` gives ParaView the simulated times. Types:
 
-- joints: outline of every Journal, Bearing, Ball, Socket, Slider and SlotFace, and the triangles of every
-  MeshBore, at the current temperature; ``kind`` counts them as KINDS below does
+- joints: outline of every Journal, Bearing, Ball, Socket, Slider and SlotFace, and the triangles of every MeshBore, at
+  the current temperature; ``kind`` is the index in KINDS
 - links: every ThermalLink as a line, with its axial force
 - contacts: a point per contact, with normal and shear force as vectors on body 1, the gap or
   penetration depth and whether it slips
@@ -36,7 +36,7 @@ KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4, "Ball": 5, "Soc
 
 
 class _Data:
-    """Polylines or points with arrays, added one by one, followed by meshes. All arrays exist even without cells,
+    """Polylines or points with data arrays, added one by one, followed by meshes. All arrays exist even without cells,
     because ParaView requires the same arrays at all times."""
 
     def __init__(self, components: dict[str, int]) -> None:
@@ -116,7 +116,7 @@ def _mesh(body, given: np.ndarray) -> np.ndarray:
 
 
 class ParaViewRecorder:
-    """Writes the current scene; see the module.
+    """Writes the current scene as files for ParaView.
 
     :param prefix: beginning of all file names; missing folders are created
     :param program: ThermalProgram whose temperature change is also written, or None
@@ -130,7 +130,7 @@ class ParaViewRecorder:
         self.meshes: dict[int, tuple[np.ndarray, np.ndarray]] = {}
 
     def write(self) -> None:
-        """Write one file of each type for the current step, and update the series."""
+        """Write one file of each type for the current step, and update the series files."""
         change = self.program.temperatureChange(O.time) if self.program else 0.0
         joints = _Data({"body": 1, "kind": 1, "temperature_change_K": 1, "velocity_m_per_s": 3})
         bores = []

@@ -2,12 +2,12 @@
 """One rib of the umbrella antenna of Chen et al. (2021), section 4: two links, one joint with play.
 
     yade -n -x yade_scripts/examples/umbrella.py            # prints first contact and the state jump
-    yade yade_scripts/examples/umbrella.py                  # the same with YADE's windows: press play, 3D
+        yade yade_scripts/examples/umbrella.py                  # with YADE's windows: press play, 3D
     PARAVIEW=out/umbrella- yade -n -x yade_scripts/examples/umbrella.py    # files for ParaView as well
 
-Links AB and BC are pinned to a frame at A and C. At B the journal of BC has 0.1 mm of play in the
-bearing of AB. During heating the links grow and the frame does not. The play closes, journal and
-bearing roll and slip, and after the eclipse they rest in another position.
+Links AB and BC are pinned to a frame at A and C. At B the journal of BC has 0.1 mm of play in the bearing of AB. During
+heating the links grow and the frame does not. The play closes, and the journal rolls and slips in the bearing. After
+the eclipse it rests in another position.
 """
 import os
 import sys

@@ -5,8 +5,9 @@
     export PYTHONPATH=build/python
     yade-batch --job-threads=1 --log=@.log samples.table yade_scripts/runner/batch_case.py
 
-Each line writes the history ``samples.table.sample_<number>.csv`` and ``….outcomes.json``, the numbers in the row of
-the table of ``statejump montecarlo``. An interrupted batch cannot be resumed; use ``statejump montecarlo`` for this.
+Each line writes the history ``samples.table.sample_<number>.csv`` and ``….outcomes.json``, the numbers that ``statejump
+montecarlo`` writes into a row of its table. An interrupted batch cannot be resumed; use ``statejump montecarlo`` for
+this.
 """
 import json
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures of a run with names of the case; the plugin knows only body numbers."""
+"""Describes failures of a run with names of the case, because the plugin knows only body numbers."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -14,7 +14,7 @@ def pair(one: Any, other: Any) -> frozenset[int]:
 
 
 class SceneFailure(RuntimeError):
-    """A failure found by the script; the message contains neither time nor temperature.
+    """A failure that the script itself detects; its message contains neither time nor temperature.
 
     :param code: code of the failure
     :param joint: name of the joint in result files
@@ -30,7 +30,7 @@ class SceneFailure(RuntimeError):
 
 @dataclass
 class Names:
-    """Names of the case by the plugin's numbers of one or two bodies."""
+    """Names of parts of the case, by the body numbers (one or two) that the plugin reports."""
 
     joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # joint, words for the sentence
     links: dict[frozenset[int], str] = field(default_factory=dict)
@@ -76,14 +76,14 @@ def described(
     temperature_change: Callable[[float], float], stable_time_step: Callable[[], float],
     step_remedy: Callable[[float], str],
 ) -> dict[str, Any]:
-    """Return the fields of a failure: cause, time, temperature; if known, joint, text for its position and remedy.
+    """Return the fields of a failure: cause, time, temperature; if known, joint, its position as text, and remedy.
 
     :param error: the error that ended the run
     :param taken: the failure from ``statejump_yade.take_failure``; None: the error is not from the plugin
     :param now_s: time [s] for failures without a time
     :param temperature_change: temperature change [K] of the case's (first) program at a time [s]
     :param stable_time_step: stable step [s] of the whole scene in its current state
-    :param step_remedy: returns the key of the case file for a step of at most this many seconds
+    :param step_remedy: returns, for a stable step [s], the key of the case file that sets such a step
     """
     joint, words, remedy, time_s, part = "", "", "", now_s, ""
     if taken is None:

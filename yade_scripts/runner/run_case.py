@@ -8,9 +8,9 @@ Without ``-x``, YADE keeps the scene after the run or after a failure and shows 
 the 3-D view in place of a run.
 
 The input is the resolved case as JSON. The script writes samples, see ``statejump.core.samples``, block by block to
-``<output>.partial``, and renames this file at the end. A scene's module has ``COLUMNS`` or ``columns(case)``,
-``build``, ``watched``, ``sample``, ``names``, ``step_remedy`` and ``summary``; the modules beside this script document
-them. The caller reads lines of standard output that begin with ``STATEJUMP``: ``{"progress": fraction}``, or
+``<output>.partial``, and renames this file at the end. A scene module defines ``COLUMNS`` or ``columns(case)``,
+``build``, ``watched``, ``sample``, ``names``, ``step_remedy`` and ``summary``, documented in the modules beside this
+script. The caller reads lines of standard output that begin with ``STATEJUMP``: ``{"progress": fraction}``, or
 ``{"failure": {...}}`` with the fields of a failure.
 """
 import json
@@ -42,12 +42,12 @@ class CaseFailure(Exception):
 
 
 def report(message):
-    """Report to the caller, on a new line because YADE may have left a line open."""
+    """Report to the caller on a new line, because YADE may have left a line open."""
     print(f"\nSTATEJUMP {json.dumps(message)}", flush=True)
 
 
 def scene_of(name):
-    """Return the module that builds the scene: one beside this script, or a separate file."""
+    """Return the module that builds the scene: a file beside this script, or the file of a user's kind."""
     if not name.endswith(".py"):
         return import_module(name)
     specification = spec_from_file_location(Path(name).stem, name)
@@ -65,7 +65,7 @@ class Block:
         self.refused = None  # kept here, because YADE converts Python errors to tracebacks
 
     def record(self):
-        """Write the samples if they are many or old enough, and report progress."""
+        """Write the collected samples if they are many or old enough, and report progress."""
         waited = time.perf_counter() - self._written
         if waited < SECONDS_OF_A_BLOCK and self._recorder.bytes_kept < BYTES_OF_A_BLOCK:
             return
@@ -147,7 +147,7 @@ def run(case, output):
 def step_joints(case, substeps):
     """Let the JointStepper make the steps, if the case selects it.
 
-    :param substeps: number of steps that it makes in one step of YADE's loop
+    :param substeps: number of steps of the JointStepper in one step of YADE's loop
     """
     if case["dem"].get("stepper") == "joint":
         O.engines = [O.engines[0], sj.JointStepper(substeps=substeps), *O.engines[1:]]
@@ -166,14 +166,14 @@ def view(case):
 
 
 def end(failure):
-    """Report a failure; then end YADE or, without -x, show the traceback and keep the scene."""
+    """Report a failure; then end YADE. Without the option -x, show the traceback and keep the scene."""
     report({"failure": failure})
     if yade.runtime.opts.exitAfter:
         os._exit(2)
 
 
 def main():
-    """Run the case named in the environment, or the one beside this script."""
+    """Run the case named in the environment, or the case file beside this script."""
     here = Path(sys.argv[0]).resolve().parent
     case = json.loads(Path(os.environ.get("STATEJUMP_CASE_JSON", here / "case.json")).read_text())
     if os.environ.get("STATEJUMP_VIEW"):

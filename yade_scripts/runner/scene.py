@@ -37,8 +37,8 @@ def fixed_point(position: tuple[float, float, float]) -> int:
 
 
 def start_sticking(slides: Mapping[int, tuple[float, float, float]]) -> None:
-    """Load the contacts of pads by friction: each contact gets a slide, while its pad does not move. ``O.engines`` and
-    ``O.dt`` must be those of the run. Without slides the function has no effect.
+    """Load the contacts of pads by their initial friction: each contact gets a slide, but its pad does not move.
+    ``O.engines`` and ``O.dt`` must be those of the run. Without slides the function has no effect.
 
     :param slides: slide of each pad [m], by body
     """
@@ -70,8 +70,8 @@ def joint_engines(
     guides: dict[int, tuple[float, float, float]] | None = None,
     prismatic_joints: tuple[sj.PrismaticJoint, ...] = (),
 ) -> list[wrapper.Engine]:
-    """Return the engines of any scene of joints, links and torsion springs. Recorders read positions, temperature and
-    forces of the same time.
+    """Return the engines of a scene of joints, links and torsion springs. Recorders read positions, temperature and
+    forces that belong to the same time.
 
     :param expansions: ThermalExpansionEngines of the bodies; None: all of them follow ``program``
     :param guides: normals of the planes in which bodies stay, by id

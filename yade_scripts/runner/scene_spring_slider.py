@@ -48,7 +48,7 @@ class SpringSliderScene:
 
     @property
     def has_play(self) -> bool:
-        """Whether friction acts in the prismatic joint instead of on the floor."""
+        """Whether friction acts in a prismatic joint (with play) instead of on the floor."""
         return self.prismatic is not None and bool(self.prismatic.play > 0)
 
     @property
@@ -60,8 +60,8 @@ class SpringSliderScene:
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
     """Build the scene of a bar with a slider at its tip, in a slot (1-D clearance joint).
 
-    The bar lies along x with its root at -l0. The slider starts in equilibrium: at the centre of the slot or displaced
-    by a preload force, with penetration depths that carry the loads of floor and stop, and with its initial friction.
+    The bar lies along x with its root at -l0. The slider starts in equilibrium, at the centre of the slot or displaced
+    by a preload force. Penetration depths carry the loads of floor and stop; the initial friction acts.
 
     :param case: resolved case, sections and keys as in the case file
     :param recorders: engines that read the state, run before the motion of each step
@@ -147,7 +147,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
 
 
 def prismatic_joint(case: dict[str, Any], slider: int, depth_m: float) -> sj.PrismaticJoint | None:
-    """Return the joint for soft stops and friction with play; None if the case has neither."""
+    """Return the prismatic joint that models soft stops and friction with play; None if the case has neither."""
     joint, dem = case["joint"], case["dem"]
     stops: dict[str, float] = {}
     friction: dict[str, float] = {}
@@ -167,7 +167,7 @@ def prismatic_joint(case: dict[str, Any], slider: int, depth_m: float) -> sj.Pri
 
 
 def stored_by_preload(joint: dict[str, Any], displacement: Any) -> Any:
-    """Return the energy of the preload spring [J]: k_p x²/2 + P x."""
+    """Return the energy of the preload spring [J], k_p x²/2 + P x."""
     return (0.5 * joint["preload_stiffness_N_per_m"] * displacement + joint["preload_force_N"]) * displacement
 
 
@@ -177,8 +177,8 @@ def watched(built: SpringSliderScene) -> Watched:
 
 
 def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> list[np.ndarray]:
-    """Return the columns. Forces are those on the block, and the axial force is positive in compression; YADE stores
-    contact forces on the face."""
+    """Return the columns of the samples. Forces are those on the block (YADE stores those on the face); the axial force
+    is positive in compression."""
     (slider,), (link,) = states.bodies([built.slider]).T, states.links([built.link]).T
     floor, *stops = states.contacts(built.pairs).T
     lost = floor["real"] == 0
@@ -223,7 +223,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
 
 
 def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
-    """Return the names of contacts and links; contacts have their names in result files."""
+    """Return the names of contacts and links; names of contacts are those in result files."""
     found = Names()
     faces = ("floor",) if built.has_soft_stops else ("floor", "stop_minus", "stop_plus")
     for contact in faces:
@@ -240,7 +240,7 @@ def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
 
 
 def step_remedy(case: dict[str, Any], stable_s: float) -> str:
-    """Return a remedy: the key of the case file that sets a step of at most ``stable_s`` [s]."""
+    """Return a remedy: the key of the case file that sets a time step of at most ``stable_s`` [s]."""
     return f"set dem.time_step_s to {rounded_down(stable_s):g} or less, stable in this state"
 
 

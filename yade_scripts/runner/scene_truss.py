@@ -57,7 +57,7 @@ def columns(case: dict[str, Any]) -> list[str]:
 
 
 class Programs:
-    """Temperature programs of YADE, one for each pair of program and fraction."""
+    """Temperature programs in YADE, one for each program and each fraction of its temperatures."""
 
     def __init__(self, case: dict[str, Any]) -> None:
         self._case = case["programs"]
@@ -183,7 +183,7 @@ def watched(built: TrussScene) -> Watched:
 
 
 def sample(case: dict[str, Any], built: TrussScene, states: States) -> list[np.ndarray]:
-    """Return the columns of all samples, see :func:`columns`; several of them as an array with two axes."""
+    """Return the columns of all samples, see :func:`columns`; groups of columns are arrays (sample, item)."""
     faults = [*_strangers(case, built, states), *(fault for joints in built.joints for fault in joints.faults(states))]
     if faults:
         raise min(faults, key=lambda fault: fault.time_s)
@@ -214,7 +214,7 @@ def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
 
 
 def _strangers(case: dict[str, Any], built: TrussScene, states: States) -> Iterator[SceneFailure]:
-    """Yield a failure for the first two bodies that touch but must not."""
+    """Yield a failure for the first two bodies in contact that the case does not pair."""
     strangers = states.strangers()
     touching = strangers[:, 0] >= 0
     if not touching.any():
@@ -244,7 +244,7 @@ def names(case: dict[str, Any], built: TrussScene) -> Names:
 
 
 def step_remedy(case: dict[str, Any], stable_s: float) -> str:
-    """Return a remedy: the key of the case file that sets a step of at most ``stable_s`` [s]."""
+    """Return a remedy: the key of the case file that sets a time step of at most ``stable_s`` [s]."""
     fraction = case["dem"]["time_step_fraction"] * stable_s / case["dem"]["time_step_s"]
     return f"set dem.time_step_fraction to {rounded_down(fraction):g} or less, stable in this state"
 

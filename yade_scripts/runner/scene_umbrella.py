@@ -26,7 +26,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class UmbrellaScene:
-    """Objects of the scene for scripts: body ids of the two tips, links, law, program."""
+    """Objects of the scene for scripts: body ids of the two link tips, links, law, program."""
 
     program: sj.ThermalProgram
     bearing: int  # tip of AB
@@ -53,8 +53,8 @@ def joint_law(joint: dict[str, Any]) -> sj.Law2_JointGeom_JointPhys_JointLaw:
 
 
 def tip(shape, link: dict[str, Any], joint: dict[str, Any], expansion: float, start, velocity) -> int:
-    """Append the body at the tip of a link and return its id. A uniform rod on a fixed pin is
-    exactly a spring with a third of its mass at the tip; the tip rotates with its link."""
+    """Append the body at the tip of a link and return its id. A spring with a third of the rod's mass at its tip moves
+    exactly like a uniform rod on a fixed pin; the tip rotates with its link."""
     body = wrapper.Body()
     body.shape = shape
     body.material = sj.ThermalFrictMat(
@@ -72,7 +72,7 @@ def tip(shape, link: dict[str, Any], joint: dict[str, Any], expansion: float, st
 
 
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> UmbrellaScene:
-    """Build the scene: A at the origin, C on the x axis, journal of BC in the bearing of AB.
+    """Build the scene: pin A at the origin, pin C on the x axis, journal of link BC in the bearing of link AB.
 
     :param case: resolved case, sections and keys as in the case file; ``start`` also holds
         positions [m] and velocities [m/s] of both tips
@@ -134,7 +134,7 @@ def watched(built: UmbrellaScene) -> Watched:
 
 
 def sample(case: dict[str, Any], built: UmbrellaScene, states: States) -> list[np.ndarray]:
-    """Return the columns. Forces on the journal, the tangential one along (-n_y, n_x)."""
+    """Return the columns: forces on the journal, with the tangential force positive along (-n_y, n_x)."""
     tips = (built.bearing, built.journal)
     bearing, journal = states.bodies(tips).T
     (contact,), (link,) = states.contacts([(built.journal, built.bearing)]).T, states.links([built.link_ab]).T
@@ -162,7 +162,7 @@ def sample(case: dict[str, Any], built: UmbrellaScene, states: States) -> list[n
 
 
 def names(case: dict[str, Any], built: UmbrellaScene) -> Names:
-    """Return the names of joint, links and spring; the joint has its name in result files."""
+    """Return the names of joint, links and spring; the name of the joint is that in result files."""
     found = Names({pair(built.bearing, built.journal): ("joint_b", "joint_b")})
     found.bodies.update({built.bearing: "the bearing of joint_b", built.journal: "the journal of joint_b"})
     found.add_link(built.link_ab, "link_ab")
@@ -173,7 +173,7 @@ def names(case: dict[str, Any], built: UmbrellaScene) -> Names:
 
 
 def step_remedy(case: dict[str, Any], stable_s: float) -> str:
-    """Return a remedy: the key of the case file that sets a step of at most ``stable_s`` [s]."""
+    """Return a remedy: the key of the case file that sets a time step of at most ``stable_s`` [s]."""
     samples = case["output"]["samples_per_cycle"]
     steps = ceil(case["period_s"] / stable_s / samples) * samples
     return f"set dem.steps_per_cycle to {steps} or more, stable in this state"

@@ -23,7 +23,7 @@ JOINT = [("slide", NUMBER), ("frictionForce", NUMBER), ("stopForce", NUMBER)]
 
 
 class Watched:
-    """The recorded parts of a scene, in the order of their names."""
+    """Parts of a scene to record; samples have the order of these lists."""
 
     def __init__(self, bodies: Iterable[int] = (), contacts: Iterable[Pair] = (),
                  links: Iterable[sj.ThermalLink] = (), springs: Iterable[sj.TorsionSpring] = (),
@@ -51,14 +51,15 @@ class States:
         return sum(self._rows[name] for name in names)
 
     def strangers(self) -> np.ndarray:
-        """Return two bodies in contact that are not recorded; -1 if there are none."""
+        """Return two bodies in contact whose contact is not recorded; -1 if there are none."""
         return np.stack([self._rows["stranger1"], self._rows["stranger2"]], axis=1).astype(int)
 
     def _of(self, sort: str, keys: Iterable[Any]) -> np.ndarray:
         return self._rows[sort][:, [self._places[sort, key] for key in keys]]
 
     def bodies(self, ids: Sequence[int]) -> np.ndarray:
-        """Return ``position`` [m], ``velocity`` half a step earlier [m/s], and ``force`` along free directions [N]."""
+        """Return ``position`` [m], ``velocity`` [m/s] half a step before the position, and ``force`` along free
+        directions [N]."""
         return self._of("bodies", ids)
 
     def kinetic_energies(self, ids: Sequence[int]) -> np.ndarray:
@@ -69,8 +70,8 @@ class States:
         return 0.5 * masses * dot(velocities, velocities)
 
     def contacts(self, pairs: Iterable[Pair]) -> np.ndarray:
-        """Return ``real`` and ``slipping`` (1 or 0), ``penetrationDepth`` [m] and, with YADE's conventions, ``normal``,
-        ``normalForce`` and ``shearForce`` [N]; zeros where the bodies do not touch."""
+        """Return ``real`` and ``slipping`` (1 or 0), ``penetrationDepth`` [m] and, with YADE's signs, ``normal``,
+        ``normalForce`` and ``shearForce`` [N]; zeros if the bodies do not touch."""
         return self._of("contacts", pairs)
 
     def links(self, links: Iterable[sj.ThermalLink]) -> np.ndarray:
@@ -87,7 +88,7 @@ class States:
 
 
 class Recorder:
-    """A StateRecorder and the meaning of its rows. Place ``engine`` right before the NewtonIntegrator.
+    """A StateRecorder, and the order of the values in its rows. Place ``engine`` right before the NewtonIntegrator.
 
     :param every: number of steps between samples
     """
@@ -127,7 +128,7 @@ class Recorder:
 
 
 def dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return scalar products along the last axis, in the order in which Eigen adds."""
+    """Return scalar products along the last axis, summed in the same order as in Eigen."""
     return one[..., 0] * other[..., 0] + (one[..., 1] * other[..., 1] + one[..., 2] * other[..., 2])
 
 
@@ -137,10 +138,10 @@ def norm(vectors: np.ndarray) -> np.ndarray:
 
 
 def in_order(values: np.ndarray) -> np.ndarray:
-    """Return sums over the second axis, added from the first to the last."""
+    """Return sums over the second axis, with terms added from the first to the last."""
     return 0.0 + np.cumsum(values, axis=1)[:, -1] if values.shape[1] else np.zeros(len(values))
 
 
 def each(function: Any, *values: np.ndarray) -> np.ndarray:
-    """Return a function of Python's ``math``, applied to every sample; results of NumPy differ between processors."""
+    """Return a function of Python's ``math`` that works on arrays; results of NumPy differ between processors."""
     return np.array(list(map(function, *(some.tolist() for some in values))))

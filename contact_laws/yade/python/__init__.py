@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """State jump contact laws for YADE: clearance joints with dry friction under thermal expansion.
 
-Import it in an ordinary script run by ``yade``::
+Import this package in an ordinary script run by ``yade``::
 
     from statejump_yade import *
 
-which registers the classes with the running YADE and makes them importable from here.
+The import registers the classes with the running YADE and makes them available in the script.
 """
 import sys as _sys
 

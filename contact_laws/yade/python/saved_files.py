@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""O.load of a file that another YADE saved: one sentence instead of what Boost.Serialization throws."""
+"""Gives O.load a clear message for a file saved by another YADE, instead of the exception of Boost.Serialization."""
 from __future__ import annotations
 
 import bz2
@@ -14,7 +14,7 @@ OPENED_BY = {".gz": gzip.open, ".bz2": bz2.open}
 
 
 def archive_version(path: Path) -> int | None:
-    """Return the version of Boost's archive format that the file names at its beginning; None: it names none."""
+    """Return the version of Boost's archive format in the header of the file; None: the header has no version."""
     try:
         with OPENED_BY.get(path.suffix, open)(path, "rb") as stream:
             head = stream.read(512)
@@ -27,10 +27,10 @@ def archive_version(path: Path) -> int | None:
 
 
 class ForeignFile(RuntimeError):
-    """A file that another YADE saved.
+    """A file was saved by another version of YADE.
 
     :param file: the file
-    :param version: version of its archive
+    :param version: version of its archive format
     """
 
     def __init__(self, sentence: str, file: str, version: int) -> None:
@@ -39,11 +39,11 @@ class ForeignFile(RuntimeError):
 
 
 def explained(load: Callable[..., None], own_version: int, built_for: str) -> Callable[..., None]:
-    """Return YADE's O.load, which then says when it failed at a file that another YADE saved.
+    """Return YADE's O.load, extended by a message if it fails at a file saved by another YADE.
 
     :param own_version: version of the archives that this YADE writes
-    :param built_for: which YADE that is
-    :raises ForeignFile: the sentence; everything else that YADE raises passes unchanged
+    :param built_for: name of this YADE
+    :raises ForeignFile: the file was saved by another YADE; other exceptions of YADE are passed on unchanged
     """
     @functools.wraps(load, assigned=("__doc__",), updated=())
     def explained_load(self: Any, file: str, *arguments: Any, **named: Any) -> None:

@@ -28,10 +28,9 @@ def slot(
     :param material: a ThermalFrictMat, or the label or number of one in ``O.materials``
     :param orientation: orientation of the slot
     :param ceiling: whether there is a ceiling
-    :param halfSize: how far faces reach from the centre for the collider [m]; None: as far as the
-        most distant face
-    :returns: bodies to append, in the order floor, minus stop, plus stop[, ceiling]; without the
-        stops that there are not
+    :param halfSize: extent of the faces from the centre, for the collider [m]; None: the distance of the most distant
+        face
+    :returns: bodies to append, in the order floor, minus stop, plus stop[, ceiling]; absent stops are omitted
     """
     if isinstance(material, (str, int)):
         material = wrapper.Omega().materials[material]

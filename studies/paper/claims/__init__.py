@@ -2,6 +2,6 @@
 """Tests of the paper's statements about its Figures 13 to 16, by runs of both models.
 
 A rule, printed beside the verdict, derives each verdict from numbers; the reason follows from verdict and numbers.
-``statistics`` has the tests, ``findings`` their input, ``verdicts`` and ``measures`` the statements, ``page`` their
-page.
+``statistics`` holds the tests, ``findings`` the input of the tests, ``verdicts`` and ``measures`` the statements, and
+``page`` the page of results.
 """

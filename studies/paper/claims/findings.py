@@ -11,7 +11,7 @@ from studies.paper.claims.statistics import Groups, TwoSampleTest
 
 @dataclass(frozen=True)
 class FirstContact:
-    """ΔT [K] of first contact at one clearance, for links that do not vibrate at the start; None: no contact."""
+    """ΔT [K] of first contact at one clearance, for links without initial vibration; None: no contact occurs."""
 
     clearance_m: float
     closed_form_K: float | None
@@ -23,7 +23,7 @@ class FirstContact:
 
 @dataclass(frozen=True)
 class Envelope:
-    """θ2 of all runs of one kind, compared with the range that the clearance allows at the same temperature."""
+    """Range of θ2 over all runs of one kind, and the range that the clearance allows at the same temperature."""
 
     runs: str
     count: int
@@ -37,7 +37,7 @@ CHAOTIC = 1e6  # growth of a small difference above which another code cannot re
 
 @dataclass(frozen=True)
 class Amplification:
-    """Two runs of the reduced model whose starts differ in the direction of AB."""
+    """Two runs of the reduced model whose initial states differ in the direction of link AB."""
 
     start_rad: float
     at_largest_temperature_rad: float

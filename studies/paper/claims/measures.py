@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Conclusion c of the paper: effect of each measure on the state jump."""
+"""Conclusion c of the paper: effect of each control measure on the state jump."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ def _taken(jump: Groups, without: float, larger: bool) -> list[np.ndarray]:
 def measure(jump: Groups, without: float, larger: bool) -> str:
     """Return the verdict on "the measure reduces the jump"; the rule is ``MEASURE_RULE``.
 
-    :param without: value of the parameter without the measure
+    :param without: parameter value without the measure
     :param larger: whether the measure increases the parameter
     """
     taken = _taken(jump, without, larger)
@@ -48,11 +48,11 @@ MEASURE_RULE = (
 class Measure:
     """One measure and its effect on the jump.
 
-    :param without: value of the parameter without the measure
+    :param without: parameter value without the measure
     :param larger: whether the measure increases the parameter
     :param label: label of the parameter
-    :param reduces: reason if the measure reduces the jump
-    :param fails: reason if it does not; a function of the mean jumps with and without it [rad]
+    :param reduces: reason to print if the measure reduces the jump
+    :param fails: reason to print if it does not: a function of the mean jumps [rad] with and without it
     """
 
     name: str

@@ -26,7 +26,7 @@ def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _rules_changed(f: Findings, claims: Sequence[Claim], rules: Sequence[str]) -> str:
-    """Return a note that rules were changed after the first runs, with the verdicts of the former rules."""
+    """Return a note that verdict rules were changed after the first runs, with the verdicts by the former rules."""
     spring = next(one for one in measures(f) if one.jump is f.jump_by_spring)
     now = measure(spring.jump.absolute(), spring.without, spring.larger)
     before = trend(spring.jump.absolute(), rising=False).verdict
@@ -63,7 +63,7 @@ def _certainty(f: Findings) -> list[str]:
 
 
 def page(title: str, command: str, f: Findings) -> list[str]:
-    """Return the lines of README.md.
+    """Return the lines of README.md, the page of verdicts.
 
     :param command: command that makes the page
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Groups of runs and tests on them: trends, measures, comparison of two ensembles."""
+"""Groups of runs, and statistical tests: trends, effect of a measure, comparison of two ensembles."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ MRAD = 1e3
 
 @dataclass(frozen=True)
 class Groups:
-    """One quantity of all runs, grouped by the value of the varied parameter."""
+    """Values of one quantity in all runs, grouped by the value of the varied parameter."""
 
     values: tuple[float, ...]  # rising
     runs: tuple[np.ndarray, ...]
@@ -26,7 +26,7 @@ class Groups:
         return np.array([np.mean(group) for group in self.runs])
 
     def standard_error(self) -> np.ndarray:
-        """Standard error of the mean at every value; 0 for a single run."""
+        """Standard error of the mean at every parameter value; 0 for a single run."""
         return np.array(
             [np.std(group, ddof=1) / np.sqrt(len(group)) if len(group) > 1 else 0.0 for group in self.runs]
         )
@@ -62,7 +62,8 @@ class Trend:
 
 
 def one_sided_welch(first: np.ndarray, second: np.ndarray, rising: bool) -> float:
-    """Return the p-value of "the second mean is above (rising) or below the first"; 1 if there is no variance."""
+    """Return the p-value of "the second mean is above (rising) or below (falling) the first"; 1 if variances are zero.
+    """
     if np.ptp(first) == 0 and np.ptp(second) == 0:
         step = np.mean(second) - np.mean(first)
         return 0.0 if (step > 0 if rising else step < 0) else 1.0
@@ -72,7 +73,8 @@ def one_sided_welch(first: np.ndarray, second: np.ndarray, rising: bool) -> floa
 
 
 def chance(first: np.ndarray, second: np.ndarray, rising: bool) -> float:
-    """Return the probability that a run of the second group lies on the claimed side of a run of the first group."""
+    """Return the probability that a run of the second group differs from a run of the first in the claimed direction.
+    """
     difference = second[:, None] - first[None, :]
     return float(np.mean(difference > 0 if rising else difference < 0))
 
@@ -129,7 +131,8 @@ class TwoSampleTest:
 
 
 def two_sample_test(quantity: str, reduced: np.ndarray, dem: np.ndarray) -> TwoSampleTest:
-    """Test whether two ensembles may have the same distribution. NaN, the result for too few runs, becomes p = 1."""
+    """Test whether two ensembles may have the same distribution. With too few runs the test gives NaN; it becomes p =
+    1."""
 
     def p(result: object) -> float:
         value = float(result.pvalue)  # type: ignore[attr-defined]

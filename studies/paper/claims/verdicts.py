@@ -19,7 +19,7 @@ NEAR_STATIC = 0.05  # of the static value
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper, the observation, the verdict, its reason as far as known, and the rule."""
+    """A statement of the paper, with the observation, the verdict, its reason as far as known, and the rule."""
 
     statement: str
     found: str
@@ -29,7 +29,7 @@ class Claim:
 
 
 def jump_verdict(f: Findings, least_m: float) -> str:
-    """Return the verdict on "a state jump occurs", for the smallest distance of the end from the start [m]."""
+    """Return the verdict on "a state jump occurs": how many runs end more than ``least_m`` [m] from their start."""
     share = float(np.mean(np.concatenate([f.end_shift_reduced_m, f.end_shift_dem_m]) > least_m))
     return HOLDS if share == 1 else IN_THE_MEAN if share > 0.5 else FAILS
 
@@ -124,7 +124,8 @@ def smaller_clearance_earlier(f: Findings) -> Claim:
 
 
 def large_clearance_never_touches(f: Findings) -> Claim:
-    """Judge "above the limit there is no contact". It requires that all runs below the limit have contact."""
+    """Judge "above the clearance limit there is no contact". The rule also requires contact in all runs below the
+    limit."""
     above = [value > f.clearance_limit_m for value in f.onset_K.values]
     right = [
         bool(np.all(np.isinf(onset) if beyond else np.isfinite(onset)))
@@ -166,7 +167,8 @@ def _trend_text(t: Trend) -> str:
 
 
 def _trend_why(t: Trend, holds: str) -> str:
-    """Return the reason of a trend's verdict; ``holds`` is the reason if the claimed direction is confirmed."""
+    """Return the reason of a trend's verdict; ``holds`` is the reason to return if the claimed direction is confirmed.
+    """
     if t.verdict == HOLDS:
         return holds
     scatter = ("two runs at neighbouring values have the claimed order with a probability as low as "

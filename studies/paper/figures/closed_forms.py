@@ -17,14 +17,14 @@ CIRCLE = np.linspace(0, 2 * np.pi, 721)
 
 
 def _theta2(case: UmbrellaCase, lengths: tuple[Any, Any], eccentricity: tuple[Any, Any]) -> Any:
-    """Return θ2 for link lengths and a distance of the link tips (numbers or arrays that broadcast)."""
+    """Return θ2 from the link lengths and the distance between the tips of the links (numbers or broadcast arrays)."""
     x, y = case.frame.length_m - eccentricity[0], -np.asarray(eccentricity[1])
     foot, height = apex_m(*lengths, np.hypot(x, y))
     return np.arctan2(y, x) + np.arctan2(height, foot)
 
 
 def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Return the extremes of θ2 [rad] over all positions in the clearance, for rigid links, by temperature.
+    """Return, for every temperature, the extremes of θ2 [rad] over all positions in the clearance, for rigid links.
 
     θ2 has no stationary point inside the clearance circle, so its extremes are on the rim.
     """
@@ -36,7 +36,7 @@ def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) ->
 
 
 def closed_form_first_contact(case: UmbrellaCase) -> float | None:
-    """Return ΔT_c [K] for a start without vibration; None without a closed form, infinity without contact."""
+    """Return ΔT [K] of first contact without initial vibration; None: no closed form; infinity: no contact."""
     return compare.closed_form_first_contact(with_values(case, {"start.mode": "matched"}))
 
 
@@ -68,7 +68,7 @@ def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | No
         )["force_N"][0])
 
     def angles(force: float) -> tuple[float, float]:
-        """Return θ2 and θ4 under a force, which shortens the links and deepens the contact."""
+        """Return θ2 and θ4 under a joint force, which shortens the links and deepens the contact."""
         play = case.clearance_m(change_K)
         end = 0.5 * min(play, _engine.largest_depth_m(joint.normal_law, joint.journal_radius_m, case.bearing_radius_m))
         depth = brentq(lambda value: normal_force(value) - force, 0, end, xtol=1e-18)
@@ -95,7 +95,8 @@ def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | No
 
 
 def quasi_static(case: UmbrellaCase, change_K: np.ndarray) -> np.ndarray | None:
-    """Return the frictionless path in contact; NaN where the spring does not close the joint; None without a spring."""
+    """Return the frictionless quasi-static path in contact. It is NaN where the spring does not close the joint, and
+    None without a spring."""
     spring = case.torsion_spring
     if spring.stiffness_N_m_per_rad == 0 or spring.bias_rad != 0:
         return None

@@ -40,7 +40,7 @@ SUMMARIES: dict[str, tuple[str, str, Callable[[np.ndarray], np.ndarray]]] = {
 
 
 def figure_of(study: Study, variants: Sequence[Variant], title: str, folder: Path) -> list[Path]:
-    """Write a figure of small multiples with its summary; return the paths."""
+    """Write a figure of small multiples and its summary; return the paths of the files."""
     used = len(variants) + len(study.summaries)
     columns = max(3, -(-used // 2))
     with style():
@@ -152,7 +152,7 @@ def _mark_static(panel: Axes, places: np.ndarray, variants: Sequence[Variant]) -
 
 
 def _common_range(variants: Sequence[Variant]) -> tuple[float, float]:
-    """Return the common range of all deflections [rad] with a margin; lines of the envelope may exceed it."""
+    """Return the common axis range of deflections [rad] with a margin; lines of the envelope may exceed it."""
     extremes = [
         (pick(v.ensemble.deflection_rad), *(pick(single_deflection(run)) for run in (v.reduced, v.dem)))
         for pick in (np.min, np.max) for v in variants
@@ -163,14 +163,14 @@ def _common_range(variants: Sequence[Variant]) -> tuple[float, float]:
 
 
 def _legend_below(drawing: Figure, entries: dict[str, Any]) -> None:
-    """Add one legend for all panels, in a strip reserved by the layout."""
+    """Add one legend for all panels, in a strip that the layout reserves below them."""
     strip = 0.28 * -(-len(entries) // 4) / drawing.get_figheight()
     drawing.get_layout_engine().set(rect=(0, strip, 1, 1 - strip))
     drawing.legend(entries.values(), entries.keys(), loc="lower center", ncol=4, fontsize=8, frameon=False)
 
 
 def figure_13(base: Variant, dem_ensemble: ensembles.EnsembleOfRuns, title: str, folder: Path) -> list[Path]:
-    """Write the paths of both centres, and that of the bearing relative to the journal."""
+    """Write Figure 13: paths of the centres of bearing and journal, and their relative path."""
     with style():
         drawing, panels = new_panels(1, 3, (12.6, 4.9))
         for panel, part in zip(panels, ("journal", "bearing")):

@@ -105,7 +105,7 @@ def _write_table(path: Path, header: Sequence[str], rows: Iterator[Sequence[Any]
 
 
 def _plain(value: Any) -> Any:
-    """Convert to JSON with significant digits only: arrays become lists, numbers that are not finite become None."""
+    """Convert values to JSON with significant digits only: arrays become lists, NaN and infinity become None."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

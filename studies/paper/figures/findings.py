@@ -27,12 +27,12 @@ def findings_of(
     case: UmbrellaCase, done: Sequence[tuple[Study, Sequence[Variant]]], base: Variant,
     dem_ensemble: ensembles.EnsembleOfRuns, contacts: tuple[FirstContact, ...], stiffness: Groups,
 ) -> Findings:
-    """Return the results of the runs.
+    """Return the results of the runs, the input of the claims.
 
     :param done: the studies of Figures 14 to 16 with their runs
     :param base: runs of the unchanged case
     :param contacts: first contact by clearance, for links without vibration
-    :param stiffness: jumps by section of the links
+    :param stiffness: jumps by cross-section of the links
     """
     clearances, frictions, springs = (variants for _, variants in done)
     threshold = ONSET * min(v.value for v in clearances) / case.link_ab.stress_free_length_m
@@ -102,7 +102,8 @@ def _amplification(case: UmbrellaCase, reduced: Run) -> Amplification:
 
 
 def _slack(case: UmbrellaCase, run: Run) -> float:
-    """Return the largest depth plus elongation of both links [m], by which rigid links seem to leave the clearance."""
+    """Return the largest sum [m] of contact depth and elongation of both links, by which rigid links seem to leave the
+    clearance."""
     first, second = case.link_lengths_m(run["temperature_change_K"])
     return float(np.max(
         np.maximum(run["penetration_depth_m"], 0)
@@ -139,7 +140,7 @@ def _check_envelopes(
 
 
 def _onset(change_K: np.ndarray, deflection: np.ndarray, threshold: float) -> np.ndarray:
-    """Return ΔT at which the deflection of each run first exceeds the threshold; infinity if it never does."""
+    """Return ΔT at which the deflection of each run first exceeds the threshold; infinity if it never exceeds it."""
     moved = np.abs(deflection) > threshold
     return np.where(moved.any(axis=1), change_K[np.argmax(moved, axis=1)], np.inf)
 
@@ -153,7 +154,7 @@ def _groups(variants: Sequence[Variant], quantity: Callable[[Variant], np.ndarra
 
 
 def _end_shift(case: UmbrellaCase, runs: ensembles.EnsembleOfRuns) -> np.ndarray:
-    """Displacement of the journal in the play from the start of each run to its end [m]."""
+    """Distance [m] of the journal's position in the play at the end of each run from that at its start."""
     angle = case.start.eccentricity_angle_rad
     centre = case.start.eccentricity_m * np.array([np.cos(angle), np.sin(angle)])
     starts = centre + np.array(list(ensembles.start_offsets(case, len(runs.theta2_rad))))

@@ -118,7 +118,7 @@ def _key(case: UmbrellaCase) -> str:
 
 
 def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> tuple[FirstContact, ...]:
-    """Return the first contact of both models at every clearance, with links that do not vibrate."""
+    """Return ΔT of first contact in both models at every clearance, for links that do not vibrate."""
     start = {"start.mode": "matched", "start.eccentricity_m": 0.0}
     cases = [with_values(variant_case(case, "joint.radial_clearance_m", value), start) for value in values]
     with part("first contact, both models", 2 * len(cases)) as step:
@@ -136,7 +136,7 @@ def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> t
 
 
 def stiffness_jumps(case: UmbrellaCase, base: Variant, part: Part) -> Groups:
-    """Return jumps for links of other sections, with as many runs as the figures."""
+    """Return the jumps for links of other cross-sections, with as many runs as the figures."""
     others = [factor for factor in SECTIONS if factor != 1]
     jumps = {1.0: base.ensemble.jump_rad}
     with part("stiffness of the links, reduced", len(others) * case.ensemble.reduced_runs) as step:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures 13 to 16: all runs, and files that are written as soon as their runs are finished."""
+"""Makes Figures 13 to 16: starts all runs, and writes each file as soon as its runs are finished."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -34,8 +34,8 @@ def make(case: UmbrellaCase, results: Results, part: Part) -> Figures:
     """Run all parts; write each file as soon as its runs are finished.
 
     :param results: root of the results; gets a folder named after the case
-    :param part: receives the name and the number of runs of a part
-    :raises NotAllowed: the figures do not fit the case
+    :param part: called with the name and the number of runs of each part
+    :raises NotAllowed: the figures do not support the case
     :raises Interrupted: Ctrl-C; the message names the finished files
     """
     if case.start.mode == "loaded":

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A kind of case that the package does not know: a rod held at one end by friction that expands and comes back.
+"""A kind of case unknown to the package: a rod held at one end by friction, which expands and returns.
 
-Its reduced model is a closed form; its "DEM" is the same with a known error, made by no YADE. It is all that the
-tests need to see whether a kind can be added without touching the package.
+Its reduced model is a closed form. Its "DEM" is the same with a known error, without YADE. The kind has only what the
+tests need to show that a kind can be added without changes to the package.
 """
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ball in a socket: force curve, friction that holds, moments, laws that need an axis."""
+"""Ball in a socket: force curve, sticking friction, moments, laws that need an axis."""
 import statejump_yade as sj
 from yade.minieigenHP import Vector3
 
@@ -30,7 +30,7 @@ def force_curve(name, change):
 
 
 def planar(kind, name):
-    """A pressed part that moves in the x-y plane: the same whether round in two or three ways."""
+    """A journal or ball pressed into its seat and moving in the x-y plane: both must give the same motion."""
     reset()
     inner, outer = {"joint": (sj.Journal, sj.Bearing), "ball": (sj.Ball, sj.Socket)}[kind]
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3)
@@ -51,7 +51,7 @@ def planar(kind, name):
 
 
 def held(name, tangential):
-    """100 N into the socket and a force across; is it held?"""
+    """Return whether a ball, pressed into its socket with 100 N, sticks under a tangential force."""
     reset()
     metal = material()
     normal = Vector3(2, 3, 6) / 7

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Journals and balls in bores of triangles. `bore.py checks` or `bore.py save FOLDER` or `bore.py many`."""
+"""Journals and balls in bores of triangles. Usage: `bore.py checks`, `bore.py save FOLDER` or `bore.py many`."""
 import inspect
 import sys
 import tempfile
@@ -19,7 +19,7 @@ def cup():
 
 
 def curve(kind, change):
-    """Force against depth, analytic part and mesh, at some angles between the vertices."""
+    """Force over depth, for the analytic part and its mesh, at some angles between the vertices."""
     rows = []
     inner, plain, mesh = {
         "journal": (sj.Journal, sj.Bearing, tube), "ball": (sj.Ball, sj.Socket, cup)
@@ -49,7 +49,7 @@ def curve(kind, change):
 
 
 def swing(outer, angle=2e-4):
-    """A journal that slides, sticks and heats in its bore, on a permanent force."""
+    """A journal that slides, sticks and heats in its bore, under a constant external force."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=2e-3)
     pin = body(
@@ -69,7 +69,7 @@ def swing(outer, angle=2e-4):
 
 
 def two_points():
-    """Three lobes so deep that a journal pushed into one touches it on both sides."""
+    """A bore with three lobes so deep that a journal pushed into one touches it on both sides."""
     reset()
     metal = material()
     pin = body((1.0e-4, 1e-7, 0), sj.Journal(radius=R1), metal, mass=0.02, inertia=3e-7, blocked="zXYZ")
@@ -126,7 +126,7 @@ def too_close():
 
 
 def bulge():
-    """A small journal on the bump of three lobes, and what other laws say to it."""
+    """A small journal on the bump between lobes, and the errors of laws that do not support this geometry."""
     def pressed(law):
         reset()
         metal = material()
@@ -148,7 +148,7 @@ def bulge():
 
 
 def recorded():
-    """What the recorder for ParaView writes of a journal and a warm bore beside it."""
+    """The ParaView recorder's output for a journal and a warm bore beside it."""
     sys.path.insert(0, str(Path(inspect.getfile(body)).resolve().parents[3] / "yade_scripts" / "examples"))
     from paraview import ParaViewRecorder
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene with and without the JointStepper, and what differs. Imported by scripts that run under ``yade``."""
+"""Runs a scene with and without the JointStepper and compares both. Imported by scripts that run under ``yade``."""
 import hashlib
 import json
 import tempfile
@@ -20,7 +20,7 @@ def counted():
 
 
 def bits(state):
-    """Return a state as text: floats print so that they read back the same, NaN equals NaN."""
+    """Return a state as text that represents floats exactly; NaN equals NaN."""
     return json.dumps(state, sort_keys=True, default=list)  # vectors in a list
 
 
@@ -35,7 +35,7 @@ def differences(one, other):
 
 
 def plain(value, without=()):
-    """Return what an object of YADE has, with the objects in its lists."""
+    """Return the attributes of a YADE object, also those of objects in its lists."""
     if isinstance(value, Vector3):
         return list(value)
     if isinstance(value, list):
@@ -50,8 +50,8 @@ def in_one_go(steps):
 
 
 def recorded(pair=(1, 0)):
-    """Record what the scene has, in steps that are no multiples of substeps: contacts of other bodies than a pair are
-    strangers."""
+    """Add a recorder of the scene that runs at steps other than multiples of the substeps. Only the contact of the
+    given pair of bodies is expected."""
     parts = {name: [part for engine in O.engines for part in getattr(engine, name, [])]
              for name in ("links", "springs", "joints")}
     bodies = [number for number in (0, 1, 3, 4) if number < len(O.bodies)]
@@ -66,8 +66,8 @@ def rows():
 
 
 def run_both(build, steps, substeps, go=in_one_go, record=None):
-    """Run a scene both ways; how many steps the ordinary loop made of them, and what differs. A pair of bodies to record
-    may be given."""
+    """Run a scene with YADE's loop and with the JointStepper; return the steps that YADE's loop made, and what differs.
+    ``record``: pair of bodies to record."""
     found = {}
     for way in ("ordinary", "stepper"):
         build()
@@ -124,7 +124,8 @@ def erased(number):
 
 
 def error_of(build, steps=2000, substeps=100):
-    """Return class, text, step and time of what ends a run, and its fault, both ways."""
+    """Return what ends a run in YADE's loop and in the JointStepper: class, text, step and time of the error, its
+    fault."""
     found = []
     for way in ("ordinary", "stepper"):
         build()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that YADE cannot load: one that says it was saved with another Boost, and one of its own that is cut off."""
+"""Files that YADE cannot load: one that names another version of Boost, and a truncated file of this YADE."""
 import sys
 from pathlib import Path
 

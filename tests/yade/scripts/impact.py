@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Balls that hit each other, both free: closed forms, published impacts, what is refused."""
+"""Collisions of two free balls: closed forms, published impacts, refused input."""
 from math import gamma, log, pi, sqrt
 
 import statejump_yade as sj
@@ -22,7 +22,7 @@ def ball_of(radius, density, position, metal, velocity=(0, 0, 0), spin=(0, 0, 0)
 
 
 def forces(name, change):
-    """Two balls of different size and expansion, held at a depth in several directions."""
+    """Forces of two balls of different size and expansion, held at several depths and directions."""
     reset()
     one = body(shape=sj.Ball(radius=R1), made_of=material(expansion=23.4e-6))
     two = body((0.02, 0, 0), sj.Ball(radius=0.6 * R1), material(expansion=12e-6))
@@ -55,7 +55,7 @@ def hertz_impact(pair_radius, pair_mass, modulus, speed):
 
 def impact(radii, densities, materials, law, velocities, spins=((0, 0, 0), (0, 0, 0)), steps=2000,
            normal=Vector3(1, 0, 0), dashpots=0.0):
-    """Let two balls collide that just touch; the second lies along the normal. What comes out."""
+    """Let two balls collide that just touch; the second lies along the normal. Return the result."""
     reset()
     metals = [material(friction=mu, young=young, poisson=nu) for young, nu, mu in materials]
     places = (-radii[0] * normal, radii[1] * normal)
@@ -124,7 +124,7 @@ TSUJI = sqrt(5 / 6) * -log(0.5) / sqrt(log(0.5) ** 2 + pi**2)
 
 
 def test_8(metal, density, tangents, friction, harder=1, dashpots=0.0):
-    """A small ball that turns hits a large, heavy one; spin by the tangent of the angle of incidence."""
+    """A small rotating ball hits a large, heavy one; the spin follows from the tangent of the angle of incidence."""
     law = dict(frictionLaw=friction)
     if not dashpots:
         law |= dict(dissipationLaw="exact_restitution", restitution=0.5)
@@ -141,7 +141,7 @@ def test_8(metal, density, tangents, friction, harder=1, dashpots=0.0):
 
 
 def oblique(friction):
-    """A glancing impact with spin about two axes: what is kept, and where the energy goes."""
+    """A glancing impact with spin about two axes: conserved quantities and energy account."""
     return impact(
         (8e-3, 5e-3), (2700, 7800), ((70e9, 0.33, 0.3), (208e9, 0.3, 0.3)),
         dict(frictionLaw=friction, dissipationLaw="exact_restitution", restitution=0.8),
@@ -150,7 +150,7 @@ def oblique(friction):
 
 
 def resumed():
-    """Saved and loaded while the balls touch: the rest bit for bit."""
+    """A run saved and loaded while the balls touch continues bit for bit."""
     import tempfile
     from pathlib import Path
 
@@ -178,7 +178,7 @@ def resumed():
 
 
 def refused(distance=1.999 * R1, **names):
-    """The sentence of a law, or of a place, that two balls cannot have."""
+    """Return the error for a law or a distance that is not possible for two balls."""
     return refusal(sj.Ball(radius=R1), sj.Ball(radius=R1), (distance, 0, 0), Law(**names))
 
 

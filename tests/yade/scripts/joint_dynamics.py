@@ -13,8 +13,8 @@ def main_module(name, function):
 
 
 def loop(time_step, steps, friction=FRICTION, damping=0.05):
-    """Journal and bearing, both free, tied to ground by thermal links, through a closed thermal
-    cycle in which the clearance and the links change; everything collides, slips and turns."""
+    """A thermal cycle of a free journal and a free bearing on thermal links; clearance and link lengths change, and the
+    bodies collide, slip and rotate."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=80, period=time_step * steps)
     pin_metal = material(friction, 23.4e-6)
@@ -62,7 +62,7 @@ def loop(time_step, steps, friction=FRICTION, damping=0.05):
 
 
 def bounce(time_step, steps):
-    """A journal runs into the wall of a fixed bearing, without friction."""
+    """A journal hits the wall of a fixed bearing, without friction."""
     reset()
     metal = material(0.0)
     pin = body(
@@ -128,8 +128,8 @@ def momentum():
 
 
 def trajectory(rotation, steps):
-    """A journal rolling and slipping in a fixed bearing, the whole scene turned by a rotation.
-    Returns what it does, turned back."""
+    """Return the motion of a journal that rolls and slips in a fixed bearing. The whole scene is rotated, and the
+    motion is rotated back."""
     reset()
     metal = material(0.2)
     here = rotation * Vector3(0.03, -0.02, 0.01)

@@ -13,14 +13,14 @@ def main_module(name, function):
 
 
 def one_by_one(steps):
-    """Like O.run(steps, True), which may return without an error that comes at once."""
+    """Run step by step, because O.run(steps, True) may miss an error of the first steps."""
     for _ in range(steps):
         O.step()
 
 
 def pressed(law):
-    """A journal pressed into a fixed bearing, spinning until friction stops it, in a cycle of the
-    temperature; then it is let go. Not chaotic: differences of rounding stay small."""
+    """A journal pressed into a fixed bearing under a cyclic temperature; friction stops its spin, then the load is
+    removed. The motion is not chaotic, so rounding errors stay small."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3)
     pin = body(
@@ -52,7 +52,7 @@ def pressed(law):
 
 
 def force_at_depth(name, change=0.0):
-    """Normal force, stiffness and energy at 10 um, by the law of that name."""
+    """Return normal force, stiffness and energy of the named normal law at a depth of 10 um."""
     reset()
     metal, hot = material(), material(expansion=20e-6)
     pin = body((CLEARANCE + 1e-5, 0, 0), sj.Journal(radius=R1), metal)
@@ -69,7 +69,7 @@ def force_at_depth(name, change=0.0):
 
 
 def on_the_floor(friction):
-    """A block on the floor of a slot, pressed with 100 N, 20 N along it, well inside mu F_N."""
+    """A block on the floor of a slot, pressed with 100 N; the tangential force of 20 N is far below mu F_N."""
     reset()
     metal = material()
     slider = body((0, -1e-6, 0), sj.Slider(radius=0.02), metal, mass=0.1, blocked="zXYZ")
@@ -93,7 +93,7 @@ def on_the_floor(friction):
 
 
 def impact(dissipation, restitution, time_step, normal="hertz_internal"):
-    """A free journal runs into a fixed bearing at 0.1 m/s without friction: speed after."""
+    """Return the rebound speed of a free journal that hits a fixed bearing at 0.1 m/s without friction."""
     reset()
     metal = material(0.0)
     pin = body(
@@ -119,7 +119,7 @@ def impact(dissipation, restitution, time_step, normal="hertz_internal"):
 
 
 def cycle(time_step, steps, friction_coefficient, damping, **names):
-    """Journal and bearing, both free, on thermal links through a thermal cycle: energy balance."""
+    """Energy balance of a free journal and a free bearing on thermal links, through a thermal cycle."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=80, period=time_step * steps)
     pin = body(
@@ -151,7 +151,7 @@ def cycle(time_step, steps, friction_coefficient, damping, **names):
 
 
 def drifting(time_step, force=0.0):
-    """A journal drifts to the wall of its bearing, perhaps pulled: time of the first contact."""
+    """Return the time of first contact of a journal that drifts to the wall of its bearing, under a force."""
     reset()
     metal = material(0.0)
     pin = body(
@@ -173,7 +173,7 @@ def drifting(time_step, force=0.0):
 
 
 def closing(time_step):
-    """Nothing moves but the clearance: a journal that heats up touches its bearing."""
+    """Only the clearance changes: a journal that heats up touches its bearing."""
     reset()
     program = sj.ThermalProgram(
         shape="table", period=1.0, tableTimes=[0, 1], tableTemperatureChanges=[0, 1000]
@@ -217,7 +217,7 @@ def many(count):
 
 
 def failing(names, slider=False, position=CLEARANCE + 6e-5):
-    """One contact that a law does not cover: the sentence, the step, and that YADE lives on."""
+    """Return fault and step of a run whose contact is outside the range of its law; YADE must not crash."""
     reset()
     metal = material(expansion=1e-6)
     if slider:
@@ -232,7 +232,7 @@ def failing(names, slider=False, position=CLEARANCE + 6e-5):
 
 
 def steps_to_the_end():
-    """A journal pressed harder and harder into johnson's range: the run ends with a sentence."""
+    """A journal pressed beyond the range of the law johnson: the run must end with an error."""
     reset()
     metal = material()
     pin = body((CLEARANCE + 5.4e-5, 0, 0), sj.Journal(radius=R1), metal, mass=1e6, blocked="yzXYZ",

@@ -9,7 +9,7 @@ ALPHA_JOURNAL, ALPHA_BEARING = 23.4e-6, 12e-6
 
 
 def force_curve(change):
-    """Push a journal into a fixed bearing; returns rows depth, force, kn, ks, R1, R2."""
+    """Push a journal into a fixed bearing; return rows of depth, force, kn, ks, R1, R2."""
     reset()
     pin = body(shape=sj.Journal(radius=R1), made_of=material(expansion=ALPHA_JOURNAL))
     hole = body(shape=sj.Bearing(radius=R2), made_of=material(expansion=ALPHA_BEARING))
@@ -43,7 +43,7 @@ def force_curve(change):
 
 
 def spinning(first_bearing):
-    """Turn a pressed journal on the spot: friction force against slide, then back."""
+    """Rotate a pressed journal about its axis and back; return friction force over slide."""
     reset()
     depth, spin = 1e-5, 10.0
     metal = material()
@@ -101,7 +101,7 @@ def sliding_pad():
 
 
 def static_load():
-    """A journal under a constant load inside the friction cone, for a long time."""
+    """A journal under a constant load inside the friction cone, for many steps."""
     reset()
     metal = material()
     load = (5.0, -50.0, 0.0)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene with a bit of everything, and all of its state. Imported by scripts that run under ``yade``."""
+"""Builds a scene with every type of part, and returns its complete state. Imported by scripts that run under ``yade``.
+"""
 import statejump_yade as sj
 
 from parts import *  # noqa: F403
 
 
 def scene(by_name, partial_slip=False):
-    """Journal on a hot link in a bearing on another, and a slider with two contacts."""
+    """A journal on a hot link, its bearing on another link, and a slider with two contacts."""
     reset()
     program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=70, period=2e-3, cycles=2)
     table = sj.ThermalProgram(
@@ -79,7 +80,7 @@ def contacts_of(interaction):
 
 
 def state():
-    """Every number of the scene that could differ; floats print so that they read back the same."""
+    """Return every number of the scene that may differ between runs, as text that represents floats exactly."""
     out = {"iter": O.iter, "time": O.time, "energy": energies(), "bodies": [], "contacts": [], "memory": []}
     for b in O.bodies:
         s = b.state

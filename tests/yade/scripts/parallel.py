@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""200 joints with friction, damping and expansion; run with -j1 and -j2. Then one with a failure."""
+"""200 joints with friction, damping and expansion, run with -j1 and -j2; then a scene with a failure."""
 
 import statejump_yade as sj
 

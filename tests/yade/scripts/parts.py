@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bodies, engines and readings that the scripts of these tests share. Runs under ``yade``."""
+"""Bodies, engines and evaluations shared by the scripts of these tests. Runs under ``yade``."""
 from __future__ import annotations
 
 import json
@@ -68,7 +68,7 @@ def body(
 
 
 def constant(change: float = 0.0) -> sj.ThermalProgram:
-    """Temperature change that holds from the second step on (the first is at time 0)."""
+    """Constant temperature change from the second step on (at the first step, time 0, it is zero)."""
     return sj.ThermalProgram(
         shape="table", period=1e-15, tableTimes=[0, 1e-15], tableTemperatureChanges=[0, change]
     )
@@ -78,7 +78,7 @@ def engines(
     program=None, links=(), normal_damping=0.0, tangential_damping=0.0, reader=None, thermal=None,
     law=None, springs=(), prismatic_joints=(),
 ) -> None:
-    """Set the engines of a scene of joints and links; the reader sees one consistent time."""
+    """Set the engines of a scene of joints and links; the evaluation reads values of one consistent time."""
     O.engines = [
         wrapper.ForceResetter(),
         *(thermal or [sj.ThermalExpansionEngine(program=program or constant())]),
@@ -142,7 +142,7 @@ def energies() -> dict[str, float]:
 
 
 def stored_minus_supplied() -> float:
-    """Elastic energy + losses - thermal work of the current step [J]."""
+    """Return elastic energy plus losses minus thermal work at the current step [J]."""
     e = energies()
     return (
         sum(e.get(name, 0.0) for name in ("jointElastic", "jointFriction", "jointDamping"))
@@ -156,7 +156,7 @@ def stored_minus_supplied() -> float:
 
 
 def sentence_of(call) -> list[str]:
-    """Return class and text of the error that a call raises, or 'none' and ''."""
+    """Return class and text of the error that a call raises; 'none' and '' without an error."""
     try:
         call()
     except BaseException as error:
@@ -165,14 +165,15 @@ def sentence_of(call) -> list[str]:
 
 
 def fault_of(call) -> list[str]:
-    """Return class and fault of the error that a call raises, or 'none' and ''; the text of an error that has no code."""
+    """Return class and fault of the error that a call raises; an error without a code gives its text; 'none' and ''
+    without an error."""
     sj.take_failure(), sj.take_refusal()  # earlier ones
     kind, text = sentence_of(call)
     return [kind, fault(sj.take_failure() or sj.take_refusal()) or text]
 
 
 def fault(taken) -> str:
-    """Return a failure or refusal as 'CODE KEY = VALUE (PART BODIES)', without what it has not; '' for None."""
+    """Return a failure or refusal as 'CODE KEY = VALUE (PART BODIES)', without missing fields; '' for None."""
     if not taken:
         return ""
     key, value = taken.get("quantity") or taken.get("key"), taken["value"]
@@ -181,8 +182,8 @@ def fault(taken) -> str:
 
 
 def pressed(one: int, two: int, mover: int, distance) -> list[dict]:
-    """Return what the contact of two bodies shows at three depths in three directions, one of the bodies in the
-    origin; distance: of their centres, by depth [m]."""
+    """Return the contact of two bodies at three depths in three directions. One body is at the origin, ``mover`` moves;
+    ``distance`` converts depth [m] to distance of the centres [m]."""
     rows = []
     for depth in (1e-7, 3e-6, 1e-5):
         for direction in ((0, 0, 1), (0.6, 0, -0.8), (2 / 7, 3 / 7, 6 / 7)):
@@ -198,7 +199,7 @@ def pressed(one: int, two: int, mover: int, distance) -> list[dict]:
 
 
 def refusal(first, second, offset, law) -> list[str]:
-    """Return class and fault of the error when two shapes of one metal, the second at an offset, have this law."""
+    """Return class and fault of the error if a law acts between two shapes of one material, the second at an offset."""
     reset()
     metal = material()
     body(shape=first, made_of=metal)
@@ -214,10 +215,10 @@ def refusal(first, second, offset, law) -> list[str]:
 
 
 class Balance:
-    """Energy balance of the scene, read before the motion of each step.
+    """Energy balance of the scene, evaluated before the motion of each step.
 
-    Leapfrog: m v(n-1/2).v(n+1/2)/2 is the kinetic energy whose change is exactly the trapezoidal
-    work of the forces. v(n+1/2) follows from the forces of this step.
+    The kinetic energy m v(n-1/2).v(n+1/2)/2 changes in leapfrog integration by exactly the trapezoidal work of the
+    forces. v(n+1/2) follows from the forces of this step.
     """
 
     def __init__(self, ids, permanent=None) -> None:

@@ -27,7 +27,8 @@ def pair(blocked="XYZ", dt=1e-9, reader=None, **keywords):
 
 
 def loop(steps, amplitude, **keywords):
-    """Law of a joint that is led along its axis to the amplitude, its opposite and back, aside all the time."""
+    """Forces of a prismatic joint moved along its axis to the amplitude, its opposite and back, at a constant lateral
+    offset."""
     aside = 1e-6
     ids, joint = pair(blocked="xyzXYZ", **keywords)
     rows = []
@@ -43,7 +44,7 @@ def loop(steps, amplitude, **keywords):
 
 
 def swing(dt, time, ratio, **keywords):
-    """Both bodies free, thrown against each other along the axis and across it, until friction holds them."""
+    """Two free bodies, which move against each other along and across the axis until friction stops them."""
     ids, joint = pair(dt=dt, reader="read()", dampingRatio=ratio, **keywords)
     start = O.bodies[ids[0]].state
     start.vel = 0.3 * AXIS + 0.02 * ACROSS
@@ -64,7 +65,7 @@ def swing(dt, time, ratio, **keywords):
 
 
 def limit(factor):
-    """One body on the stiffest spring; dt = factor times the true limit."""
+    """One body on the stiffest spring; dt is ``factor`` times the exact stability limit."""
     reset()
     ids = [body(OFFSET, mass=MASSES[0], blocked="XYZ"), body((0, 0, 0))]
     joint = sj.PrismaticJoint(id1=ids[0], id2=ids[1], axis=AXIS, offset=OFFSET, **LAW)

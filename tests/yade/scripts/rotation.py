@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ball that is free to turn, rubbing in a socket, under every way in which YADE can turn bodies."""
+"""A ball that rotates freely and rubs in a socket, with every rotation scheme of YADE."""
 from parts import *  # noqa: F403
 
 STEPS = 400
 
 
 def turned(**integrator):
-    """Rows of numbers after the steps, and whether YADE takes any body for aspherical."""
+    """Return rows of numbers after the steps, and whether YADE treats any body as aspherical."""
     reset()
     metal = material()
     ball = body(
@@ -30,7 +30,7 @@ def turned(**integrator):
 
 
 def ways():
-    """Settings of the integrator that choose how bodies turn; newer YADEs have more of them."""
+    """Settings of the integrator that choose the rotation scheme; newer versions of YADE have more of them."""
     found = [{}, {"exactAsphericalRot": False}]
     if hasattr(wrapper.NewtonIntegrator, "rotAlgorithm"):
         found += [{"rotAlgorithm": name} for name in ("delValle2023", "Omelyan1998", "Fincham1992")]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Resume: `save.py write DIR LAW` saves in mid-contact and goes on; `save.py read FILE` loads and goes
-on. LAW: hertz_mindlin, by_name for laws by name, torsion spring and pin damping, or partial_slip for friction that
-remembers more than a force."""
+"""Saves and resumes runs: `save.py write DIR LAW` saves during contact and continues; `save.py read FILE` loads and
+continues. LAW: hertz_mindlin, by_name (laws by name, torsion spring, pin damping), or partial_slip (a friction law with
+a load history)."""
 import sys
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a contact keeps, who raises a failure, and what its sentence calls the bodies."""
+"""State of contacts, origin of failures, and names of bodies in failure messages."""
 from __future__ import annotations
 
 import statejump_yade as sj
@@ -11,7 +11,7 @@ Law = sj.Law2_JointGeom_JointPhys_JointLaw
 
 
 def parting(speed: float) -> dict:
-    """A journal in its bearing's wall leaves it at a speed that nothing changes: contacts that begin."""
+    """A journal leaves its bearing's wall at constant speed; return the number of contacts that began."""
     reset()
     metal = material(0.0)
     pin = body((CLEARANCE + 1e-6, 0, 0), sj.Journal(radius=R1), metal, mass=0.02, velocity=(-speed, 0, 0))
@@ -26,7 +26,7 @@ def parting(speed: float) -> dict:
 
 
 def guided_only() -> list:
-    """A step that is too long in a scene whose one engine of ours is GuidePlanes."""
+    """A time step that is too long, in a scene whose only engine of the plugin is GuidePlanes."""
     reset()
     metal = material()
     pin = body((CLEARANCE + 5e-6, 0, 0), sj.Journal(radius=R1), metal, mass=0.02, blocked="zXYZ")
@@ -40,7 +40,7 @@ def guided_only() -> list:
 
 
 def ball_in_a_mesh() -> list:
-    """A law that needs an axis, on a ball in a measured cup."""
+    """A law that needs an axis, for a ball in a meshed cup."""
     reset()
     metal = material()
     reach = CLEARANCE + 5e-6

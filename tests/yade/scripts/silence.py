@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that are none, in both loops; `silence.py PART` with the parts at the end.
+"""Invalid numbers in YADE's loop and the JointStepper. Usage: `silence.py PART`, with the parts listed at the end.
 
-A change is made before the first step, between two runs, or by a PyRunner within one, at its step 60.
+A change is made before the first step, between two runs, or by a PyRunner during a run, at its step 60.
 """
 import contextlib
 import sys
@@ -17,7 +17,8 @@ Law = sj.Law2_JointGeom_JointPhys_JointLaw
 
 
 def joint(law=None, expansion=2e-5, link_expansion=2e-5, heat=30.0, blocked="zXY"):
-    """A journal (1) on a link from body 0, pressed into its bearing (2); a spring to another link (3 to 4)."""
+    """A journal (1) on a link from body 0, pressed into its bearing (2); a torsion spring couples another link (3 to
+    4)."""
     reset()
     program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=heat, period=2e-5)
     metal = material(expansion=expansion)
@@ -59,14 +60,15 @@ def physics():
 
 
 def go(steps):
-    """Return class and text of what ends a run; YADE may end one that fails at once without a word."""
+    """Return class and text of what ends a run; if YADE misses an error of its first step, one more step raises it."""
     last = O.iter + steps
     found = sentence_of(lambda: O.run(steps, True))
     return sentence_of(O.step) if found[0] == "none" and O.iter < last else found
 
 
 def both(change, when="start", build=joint):
-    """Return what ends the scene, both ways: class, text, step, and what the plugin reports: the fault with its bodies, its time."""
+    """Return what ends the scene, for YADE's loop and for the JointStepper: class, text, step, and the plugin's fault
+    with its bodies and time."""
     found = []
     for stepper in (False, True):
         build()
@@ -89,7 +91,7 @@ def both(change, when="start", build=joint):
 
 
 def put_past(setter):
-    """Make a change that is refused and left all the same, as updateAttrs() does."""
+    """Make a change that the setter refuses but that remains nevertheless, as with updateAttrs()."""
     def change():
         with contextlib.suppress(ValueError):
             setter()
@@ -161,7 +163,7 @@ def within():
 
 
 def kept():
-    """A force that a contact keeps, of a joint that stays cold and in touch."""
+    """A NaN in the stored force of a contact; the joint stays cold and in contact."""
     def change():
         physics().shearForce = (0, NAN, 0)
     return {when: both(change, when, lambda: joint(heat=0.0)) for when in ("between", "within")}
@@ -181,7 +183,7 @@ def by_name():
 
 
 def bore():
-    """The same questions in a bore of triangles; it has no link, spring or third body."""
+    """The same changes in a scene with a bore of triangles, without link, spring and third body."""
     changes = {**CHANGES, **MATERIALS, **CONTACTS}
     named = [name for name in changes if "link" not in name and "spring" not in name]
     return {
@@ -195,7 +197,7 @@ def nothing():
 
 
 def lengths():
-    """Temperatures that leave no length: half_sine of 30 K, so -0.1/K reaches it within the rise."""
+    """Expansion coefficients that reduce a length to zero: -0.1/K does so within the half_sine of 30 K."""
     return {
         "body": both(nothing, build=lambda: joint(expansion=-0.1)),
         "link": both(nothing, build=lambda: joint(link_expansion=-0.1, blocked="xyzXYZ")),
@@ -204,7 +206,7 @@ def lengths():
 
 
 def good():
-    """What is right runs to its end, fixed bodies without mass among it."""
+    """Valid scenes run to their end, among them one with fixed bodies without mass."""
     return {
         "joint": both(nothing), "fixed": both(nothing, build=lambda: joint(blocked="xyzXYZ")),
         "by name": both(nothing, build=lambda: joint(Law())),
@@ -213,7 +215,7 @@ def good():
 
 
 def setters():
-    """Attributes of our classes refuse at once and keep what they had."""
+    """Attributes of the plugin's classes refuse invalid values and keep their former ones."""
     joint()
     go(5)
     found = {}
@@ -236,7 +238,7 @@ def setters():
 
 
 def without_our_engines():
-    """No engine of ours: a contact says it on standard error, and the run ends."""
+    """Without engines of the plugin, a contact reports the failure on standard error, and the run ends."""
     found = {}
     for name, change in {**CHANGES, **CONTACTS}.items():
         if name not in ("position", "dt zero", "modulus nan", "friction nan"):

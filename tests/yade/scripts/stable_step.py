@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A spring-slider case at rest, after one step: contact stiffnesses and the stable step that a run reports."""
+"""A spring-slider case at rest, after one step: contact stiffnesses, and the stable time step that the run reports."""
 import json
 import sys
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The same scenes with and without the JointStepper; `stepper.py PART` with the parts at the end."""
+"""The same scenes with and without the JointStepper. Usage: `stepper.py PART`; the end of this file lists the parts."""
 import struct
 import sys
 
@@ -13,7 +13,7 @@ Law = sj.Law2_JointGeom_JointPhys_JointLaw
 
 
 def joint(law=None, inertia=3e-7, blocked=PLANAR, newton=None, energy=True, load=(3.0, -20.0, 0), hot=60, **keywords):
-    """A journal that rattles in its bearing until friction and damping hold it, in a cycle of the temperature."""
+    """A journal that rattles in its bearing under a cyclic temperature, until friction and damping stop it."""
     reset()
     O.trackEnergy = energy
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=hot, period=1e-3, cycles=3)
@@ -31,7 +31,7 @@ def joint(law=None, inertia=3e-7, blocked=PLANAR, newton=None, energy=True, load
 
 
 def ball():
-    """A ball that rolls in its socket, free to turn about all axes."""
+    """A ball that rolls in its socket and rotates freely about all axes."""
     reset()
     metal = material(expansion=2e-5)
     free = body(
@@ -45,7 +45,7 @@ def ball():
 
 
 def balls(law=None):
-    """A ball that hits two others, all free to turn about all axes and hot; the last one reaches a wall."""
+    """A ball that hits two others; all are hot and rotate freely about all axes, and the last one reaches a wall."""
     reset()
     metal = material(expansion=2e-5)
     for x, y, radius, velocity in ((-2.1, 0.3, 1, (2, 0.3, -0.1)), (0, 0, 1, (0, 0, 0)), (1.4, 0, 0.4, (0, 0, 0.2))):
@@ -59,7 +59,7 @@ def balls(law=None):
 
 
 def guided():
-    """Two sliders on a hot link, one of them in a plane that is not an axis' own."""
+    """Two sliders on a hot link, one of them in a plane inclined to the axes."""
     reset()
     metal = material(friction=0.1, expansion=1e-5)
     ids = []
@@ -79,7 +79,7 @@ def guided():
 
 
 def prismatic():
-    """Two tubes on hot links that slide in each other, across and along, from stop to stop."""
+    """Two tubes on hot links that slide in each other from stop to stop and also move across."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3, cycles=5)
     walls = [body((0, 0, 0)), body((1, 0, 0))]
@@ -99,7 +99,7 @@ def prismatic():
 
 
 def approaching():
-    """Two sliders fly towards slots that they do not touch yet: the collider has to find the pairs."""
+    """Two sliders move towards slots before any contact, so the collider has to find the pairs."""
     reset()
     metal = material()
     for x in (0.0, 1.0):
@@ -110,7 +110,7 @@ def approaching():
 
 
 def crowd(energy=False):
-    """Joints beside each other, each with its own load; more than one part of the stepper holds."""
+    """Independent joints with different loads; there are more of them than one block of the JointStepper holds."""
     reset()
     O.trackEnergy = energy
     metal, other = material(expansion=2.3e-5), material(expansion=2.2e-5)
@@ -180,7 +180,7 @@ def scenes():
 
 
 def laws():
-    """Every law of the catalogue, each with the others at their defaults."""
+    """Every law of the catalogue, each with default laws for the other roles."""
     found = {}
     for attribute, names in sj.law_names().items():
         for name in names:
@@ -190,7 +190,7 @@ def laws():
 
 
 def recording():
-    """What a recorder keeps beside what a script reads in the same steps."""
+    """Compare the recorder's rows with what a script reads in the same steps."""
     mixed.scene(True)
     recorded()
     recorder, read = O.engines[-2], []
@@ -229,7 +229,7 @@ def closing():
 
 
 def too_deep():
-    """Hit so hard that the step becomes too long for the contact."""
+    """An impact so hard that the contact makes the time step unstable."""
     joint(energy=False, normal_damping=0.0)
     O.dt = 3e-5
 

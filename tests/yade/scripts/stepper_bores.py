@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bores of triangles with and without the JointStepper; `stepper_bores.py PART` with the parts at the end."""
+"""Bores of triangles with and without the JointStepper. Usage: `stepper_bores.py PART`, with the parts listed at the
+end."""
 import sys
 import tempfile
 from math import cos, pi, sin
@@ -20,7 +21,7 @@ def hot(**keywords):
 
 
 def lobed(law=None, angle=2e-4, energy=True, load=(3.0, -60.0, 0), around=60, lobes=THREE_LOBES, heat=60, damping=0.05):
-    """A journal that rattles in a warm bore with lobes, over the edges of its facets, in a cycle of the temperature."""
+    """A journal that rattles in a warm lobed bore, across the edges of its facets, under a cyclic temperature."""
     reset()
     O.trackEnergy = energy
     pin = body(
@@ -35,7 +36,7 @@ def lobed(law=None, angle=2e-4, energy=True, load=(3.0, -60.0, 0), around=60, lo
 
 
 def wedged():
-    """A journal pressed into a lobe, which it touches on both sides, with memory of friction."""
+    """A journal pressed into a lobe and in contact on both sides, with a friction law that has a load history."""
     lobed(Law(frictionLaw="mindlin_deresiewicz"), load=(50, 3, 0), damping=0.3, heat=10)
     O.bodies[1].state.ori = Quaternion((0, 0, 1), 0)
     O.bodies[1].shape = tube(120, 6, lobes=[(3, 40e-6, 0)])
@@ -49,7 +50,7 @@ def sliding():
 
 
 def free_bore():
-    """A bore that moves and turns about a journal that does, too, on a hot link; beside a bearing with the other law."""
+    """A bore and its journal, both moving and rotating freely on a hot link, beside a bearing with the other law."""
     reset()
     metal = material(expansion=2e-5)
     pin = body((0.9e-4, 0, 0), sj.Journal(radius=R1), metal, mass=0.02, inertia=3e-7, blocked=PLANAR, velocity=(0.1, 0, 0),
@@ -69,13 +70,13 @@ def free_bore():
 
 
 def leaving():
-    """The journal leaves its bore along the axis, from which on nothing holds it."""
+    """The journal leaves its bore along the axis; then nothing holds it."""
     sliding()
     O.bodies[0].state.blockedDOFs, O.bodies[0].state.vel = "XY", (0, 0.15, 10)
 
 
 def ball(outer=None):
-    """A ball that rolls in a cup of triangles, free to turn about all axes."""
+    """A ball that rolls in a cup of triangles and rotates freely about all axes."""
     reset()
     metal = material(expansion=2e-5)
     free = body(
@@ -89,7 +90,7 @@ def ball(outer=None):
 
 
 def bumps():
-    """A small journal that hits the bumps of a wall that bulges."""
+    """A small journal that hits the convex bumps of a lobed wall."""
     reset()
     metal = material(expansion=2e-5)
     out = Vector3(0.5, 0.75**0.5, 0)
@@ -101,8 +102,8 @@ def bumps():
 
 
 def crowd(energy=True, count=40):
-    """Journals in one shared wall, pushed each its own way, and more than one part of the stepper holds; every fourth
-    does not touch yet."""
+    """Journals in one shared wall mesh, with different loads, more than one block of the JointStepper holds. Every
+    fourth journal has no contact yet."""
     reset()
     O.trackEnergy = energy
     metal = material(expansion=1e-5)
@@ -143,7 +144,7 @@ def saved_in_contact(steps):
 
 
 def pushed_on(steps):
-    """Runs that end anywhere, a load that changes to and fro meanwhile."""
+    """Run a scene in pieces of irregular length and change the load between them."""
     for piece in (1, 2, 30, 101, 7, 400):
         O.run(piece, True)
         O.forces.setPermF(0, (5.0 - O.iter % 11, 10.0 - O.iter % 19, 0))
@@ -180,8 +181,8 @@ def scenes():
 
 
 def laws():
-    """Every law of the catalogue but tangential velocities, of which a bore has one, each with the others at their
-    defaults."""
+    """Every law of the catalogue, each with default laws for the other roles; a bore supports only one tangential
+    velocity."""
     found = {}
     for attribute, names in sj.law_names().items():
         for name in names if attribute != "tangentialVelocity" else ():
@@ -191,7 +192,7 @@ def laws():
 
 
 def parts():
-    """What two threads make of parts of a scene, beside each other."""
+    """Return the result of a scene whose blocks of joints two threads process."""
     crowd(False)
     with_stepper(1000)
     O.run(3000, True)
@@ -204,7 +205,7 @@ def closing():
 
 
 def too_deep():
-    """Hit so hard that the step becomes too long for the contact."""
+    """An impact so hard that the contact makes the time step unstable."""
     lobed(energy=False, damping=0.0)
     O.dt = 3e-5
 
@@ -214,7 +215,7 @@ def parting():
 
 
 def bulging():
-    """A law that a wall that bulges does not have, when the journal reaches it."""
+    """A journal reaches a convex part of the wall, for which its law is not defined."""
     bumps()
     bore_engines(hot(), law=Law(normalLaw="johnson"))
 

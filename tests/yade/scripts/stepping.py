@@ -9,14 +9,14 @@ from parts import *  # noqa: F403
 
 
 def run(steps):
-    """Like O.run(steps, True), which may return without the error when it comes at once: YADE only
-    reports what happens after it has begun to wait."""
+    """Run step by step: O.run(steps, True) may miss an error of the first steps, because YADE only reports errors that
+    occur after it has begun to wait."""
     for _ in range(steps):
         O.step()
 
 
 def global_stepper():
-    """One contact between two free bodies, seen by YADE's own time stepper."""
+    """One contact between two free bodies, with the time step of YADE's own stepper."""
     reset()
     metal = material()
     depth, masses = 3e-6, (0.02, 0.07)
@@ -37,7 +37,7 @@ def global_stepper():
 
 
 def spring(factor, both_free):
-    """Axial spring-mass started off its rest length; dt = factor times the true limit."""
+    """An axial spring-mass system released off its rest length; dt is ``factor`` times the stability limit."""
     reset()
     mass, other = 0.01, 0.03
     root = body((0, 0, 0), mass=other, blocked="yzXYZ" if both_free else "xyzXYZ")
@@ -62,7 +62,7 @@ def spring(factor, both_free):
 
 
 def unguarded(factor):
-    """The same limit where no single spring is too stiff: two springs on one mass."""
+    """Stability limit of two springs on one mass, neither of which is too stiff alone."""
     reset()
     mass = 0.01
     roots = [body((-0.5, 0, 0)), body((0.5, 0, 0))]
@@ -97,8 +97,8 @@ def damped(factor):
 
 
 def joint(factor, inertia_factor):
-    """A journal that may turn, pressed into a fixed bearing; dt = factor times stable_time_step().
-    Small inertia makes turning against the tangential spring the fastest motion."""
+    """A journal that may rotate, pressed into a fixed bearing; dt is ``factor`` times stable_time_step(). Inertia is
+    small, so rotation against the tangential spring is the fastest vibration."""
     reset()
     metal = material(1.0)
     mass = 0.02
@@ -145,7 +145,7 @@ def contact_without_our_engines():
 
 
 def wrong_scene(change):
-    """A joint on a link in which one thing is wrong; the sentence of the run, and that YADE lives."""
+    """Return the error of a run with one mistake in a joint on a link; YADE must not crash."""
     reset()
     metal = material(expansion=change.get("expansion", 2.3e-5), young=change.get("young", YOUNG), poisson=change.get("poisson", POISSON))
     if "friction_angle" in change:

@@ -26,7 +26,7 @@ def programs():
 
 
 def expansion():
-    """+-200 K in many steps, two programs for different bodies, and back to the start."""
+    """Temperature changes of ±200 K in many steps and back, with different programs for the bodies."""
     reset()
     steel, brass, plain = material(expansion=2.3e-5), material(expansion=1.9e-5), FrictMat()
     O.materials.append(plain)
@@ -132,7 +132,7 @@ def link_force(change):
 
 
 def free_expansion():
-    """A slowly heated link with a free tip: moves by alpha dT l0 without force."""
+    """A slowly heated link with a free tip elongates by alpha dT l0 without force."""
     reset()
     root, tip = body((0, 0, 0)), body((L0, 0, 0), mass=0.01, blocked="yzXYZ")
     program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=100, period=0.2)
@@ -150,7 +150,7 @@ def free_expansion():
 
 
 def between_cables(time_step, damping=0.0, heat=0.0):
-    """A body that flies to and fro between two cables, each slack while the other is taut."""
+    """A body that moves back and forth between two cables; each is slack while the other is taut."""
     reset()
     ends, tip = [body((-1, 0, 0)), body((1, 0, 0))], body((1e-4, 0, 0), mass=0.01, blocked="yzXYZ", velocity=(-5, 0, 0))
     program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=heat, period=4e-3) if heat else constant()
@@ -219,7 +219,7 @@ def oscillation(both_free):
 
 
 def couple():
-    """A moment on the tip body becomes a couple of forces on the two ends."""
+    """A moment on the tip body acts as a couple of forces on both ends of the link."""
     reset()
     where = (Vector3(0.1, 0.2, 0.3), Vector3(0.1, 0.2, 0.3) + L0 * Vector3(2, -3, 6) / 7)
     root, tip = body(where[0]), body(where[1])
@@ -242,7 +242,7 @@ def couple():
 
 
 def joint_on_link():
-    """Journal at the tip of a link, touching a fixed bearing with friction: moment about the root."""
+    """Moment about the root of a link, whose tip is a journal in frictional contact with a fixed bearing."""
     reset()
     metal = material()
     root = body((0, 0, 0))
@@ -277,7 +277,7 @@ def joint_on_link():
 
 
 def pendulum(moment):
-    """A link swinging in the plane about a fixed root, perhaps driven by a moment on its tip."""
+    """A link that swings in the plane about a fixed root, with or without a moment on its tip."""
     reset()
     mass = 0.02
     root = body((0, 0, 0))

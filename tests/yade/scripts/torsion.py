@@ -23,7 +23,7 @@ def link_of(root, tip, length, **keywords):
 
 
 def two_links(angle1, angle2, blocked="zXYZ", blocked1=None, area=1e-6, damping=0.0, pin=0.0, z=0.0):
-    """Two links with fixed roots, free tips, directions given by their angles."""
+    """Two links with fixed roots and free tips; angles give their directions."""
     reset()
     roots = [body((0, 0, 0)), body((0.7, 0.1, 0))]
     tips = [
@@ -68,7 +68,7 @@ def angles():
 
 
 def balance():
-    """Two links held by the spring alone, each tip pulled: where they come to rest."""
+    """Rest positions of two links held only by a torsion spring, with a force on each tip."""
     roots, tips, links = two_links(0.3, 2.0, damping=0.5, pin=0.2)
     spring = sj.TorsionSpring(link1=links[0], link2=links[1], stiffness=2.0, freeAngle=1.2)
     # The couples are opposite, so only opposite moments can be held: the first link is held by a
@@ -93,7 +93,7 @@ def balance():
 
 
 def oscillation(time_step, steps):
-    """Undamped: both links swing against each other. Energy, and the sum of their moments."""
+    """Energy and sum of moments of two links that swing against each other without damping."""
     roots, tips, links = two_links(0.3, 1.8)
     spring = sj.TorsionSpring(link1=links[0], link2=links[1], stiffness=2.0, freeAngle=1.2)
     engines(links=links, springs=[spring], reader="read()")
@@ -122,7 +122,8 @@ LATCH = dict(stiffness=2.0, freeAngle=1.2, deadband=0.05, preload=0.3, frictionL
 
 
 def latch_loop(steps, amplitude=0.2):
-    """Law of a spring with play and friction: its stretch goes to the amplitude, its opposite and back."""
+    """Return moment over angle of a torsion spring with play and friction, driven to the amplitude, its opposite and
+    back."""
     roots, tips, links = two_links(0.3, 1.5, blocked="xyzXYZ")
     spring = sj.TorsionSpring(link1=links[0], link2=links[1], **LATCH)
     engines(links=[], springs=[spring])
@@ -138,7 +139,7 @@ def latch_loop(steps, amplitude=0.2):
 
 
 def latch_swing(time_step, steps):
-    """Both links swing against each other through the play, until friction holds them."""
+    """Two links that swing against each other through the play of a latch until friction stops them."""
     roots, tips, links = two_links(0.3, 1.8)
     spring = sj.TorsionSpring(link1=links[0], link2=links[1], **LATCH)
     engines(links=links, springs=[spring], reader="read()")
@@ -169,7 +170,7 @@ def latch_limit(factor):
 
 
 def limit(factor):
-    """One tip on a spring that is stiffer than the links; dt = factor times the true limit."""
+    """One link tip on a torsion spring stiffer than the links; dt is ``factor`` times the stability limit."""
     roots, tips, links = two_links(0.3, 1.5 + 1e-6, blocked1="xyzXYZ", area=1e-12)
     spring = sj.TorsionSpring(link1=links[0], link2=links[1], stiffness=50.0, freeAngle=1.2)
     engines(links=links, springs=[spring])

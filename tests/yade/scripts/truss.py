@@ -11,7 +11,7 @@ def link_of(root, tip):
 
 
 def guide():
-    """A body pushed by a constant force, held in a slanted plane; thrown along the normal as well."""
+    """A body held in an inclined plane by a guide, under a constant force, with initial velocity along the normal."""
     reset()
     normal = Vector3(1, 2, -2) / 3
     free = body((0.1, 0.2, 0.3), mass=0.5, blocked="XYZ")
@@ -27,7 +27,7 @@ def guide():
 
 
 def turned_spring():
-    """The same spring in the x-y plane and turned as a whole: forces of one step."""
+    """Forces of one step of a torsion spring, in the x-y plane and with the whole scene rotated."""
     rows = []
     for turn in (Quaternion((0, 0, 1), 0), Quaternion(Vector3(1, 2, 3).normalized(), 0.8)):
         reset()

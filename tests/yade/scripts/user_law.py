@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A law from a shared object: its force at one depth, impacts, documentation; or what a wrong one says."""
+"""A law from a shared library: force at one depth, impacts, documentation; or the error of an invalid library."""
 from __future__ import annotations
 
 import sys

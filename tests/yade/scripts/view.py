@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""3-D view of a joint and of a slot, under an X server without a screen: `view.py FOLDER`.
+"""Draws a joint and a slot in the 3-D view, under an X server without a screen. Usage: `view.py FOLDER`.
 
-YADE's user interface is there before this script imports the plugin.
+YADE's user interface is loaded before this script imports the plugin.
 """
 import os
 import sys

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints of a truss in YADE: one file per type of the DEM, used by ``scene_truss``.
+"""Joints of a truss in YADE: one file per joint type that the DEM supports, used by ``scene_truss``.
 
-``statejump.kinds.truss.joints`` has the types of all models and rejects those that the DEM does not have.
+``statejump.kinds.truss.joints`` declares the joint types of all models and rejects those that the DEM lacks.
 """
 from truss_joints.ball_joint import BallJoints
 from truss_joints.latch_hinge import LatchHinges

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Code shared by the joints of a truss in YADE: interface, rows of a section, material of bodies."""
+"""Code shared by the joints of a truss in YADE: interface, items of a section, material of bodies."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -34,13 +34,13 @@ def material(part: Row, expansion: float = 0.0) -> sj.ThermalFrictMat:
 
 
 def give(body: wrapper.Body, shape, made, group: int) -> None:
-    """Set shape and material of a body, which interacts only with the bodies of its group."""
+    """Set shape and material of a body. The body interacts only with bodies of its contact group."""
     body.shape, body.material, body.bound = shape, made, wrapper.Aabb()
     body.mask = 1 << group
 
 
 class Joints:
-    """The joints of one type. ``ids`` are the bodies of the nodes, set by :meth:`append`.
+    """All joints of one type. ``ids``: numbers of the bodies of the nodes, set by :meth:`append`.
 
     :param case: result of ``statejump.kinds.truss.dem.resolved``
     """
@@ -55,15 +55,15 @@ class Joints:
 
     def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
                 expand: Callable[[int, Row], None]) -> None:
-        """Give the bodies of nodes their contact parts.
+        """Set contact shapes and materials of the bodies of nodes.
 
-        :param turn: receives a link and a node whose body rotates with it
-        :param expand: receives a node whose part expands, and the joint with its temperature
+        :param turn: called with a link and a node whose body rotates with it
+        :param expand: called with a node whose body expands, and the joint with its temperature
         """
         raise NotImplementedError
 
     def append(self, ids: list[int]) -> Iterator[tuple[int, int]]:
-        """Append the bodies of the joints themselves; yield the pairs of bodies that may touch."""
+        """Append the bodies that belong to joints only; yield the pairs of bodies that may touch."""
         raise NotImplementedError
 
     def radii(self) -> list[float]:
@@ -79,7 +79,7 @@ class Joints:
         return []
 
     def start_slides(self) -> dict[int, tuple[float, float, float]]:
-        """Return by body the slide [m] that loads its contact by the initial friction, see
+        """Return, by body, the slide [m] that loads the contact of this body with the initial friction, see
         :func:`scene.start_sticking`."""
         return {}
 
@@ -88,11 +88,11 @@ class Joints:
         raise NotImplementedError
 
     def faults(self, states: States) -> Iterator[SceneFailure]:
-        """Yield a failure for the first event that the model of a joint does not cover."""
+        """Yield a failure for the first event that is outside the model of a joint."""
         yield from ()
 
     def faces(self) -> dict[int, tuple[str, str]]:
-        """Return joint and text by body, for the bodies of the joints themselves."""
+        """Return joint and position text of the bodies that belong to joints, by body."""
         return {}
 
     def name(self, found: Names) -> None:

@@ -13,7 +13,8 @@ from yade import wrapper
 
 
 class RoundParts(Joints):
-    """Joints of a part in a bore. Keys of each part begin with its name: ``journal_node``, ``journal_radius_m``, ..."""
+    """Joints of a round part in a bore. Keys of the case begin with the part's name: ``journal_node``,
+    ``journal_radius_m``..."""
 
     shapes: ClassVar[dict[str, Any]]  # shapes by part: the outer one, then the inner one
 
@@ -58,7 +59,7 @@ class RoundParts(Joints):
                 np.where(touches, np.where(contacts["slipping"] > 0, SLIP, STICK), SEPARATED)]
 
     def read(self, offset: np.ndarray, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the values of the columns: offset of the centres, and friction at the contact point."""
+        """Return the values of the columns: offset of the centres, and friction force at the contact point."""
         raise NotImplementedError
 
     def name(self, found: Names) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sliders of a truss in YADE. On ground, a slider is a pad at a node with a fixed floor and fixed stops. Between two
-nodes, with soft stops or with play it is a prismatic joint of the plugin, on ground against a fixed body.
+"""Sliders of a truss in YADE. A slider on ground is a pad at a node, with a fixed floor and fixed stops. A slider
+between two nodes, with soft stops or with play is a prismatic joint of the plugin; on ground, its second body is fixed.
 
-A pad is constrained at the depth at which its floor carries the normal force.
+A pad is held at the depth at which its floor carries the normal force.
 """
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class Sliders(Joints):
         }
 
     def _give_m(self, slider: Row) -> float:
-        """Return the displacement [m] of the contact of a pad along the axis under the initial friction."""
+        """Return the tangential displacement [m] of a pad's contact along the axis under the initial friction."""
         friction, limit, sticks = (
             slider[key] for key in ("start_friction_N", "friction_limit_N", "friction_stiffness_N_per_m"))
         if not self._slips_in_part:
@@ -141,7 +141,7 @@ class Sliders(Joints):
         return self.ids[self.rows[place]["nodes"][0]]
 
     def _contacts(self, states: States, places: list[int], face: int) -> np.ndarray:
-        """Return the contacts of some sliders with their floors (face 0) or one of their stops."""
+        """Return the contacts of the given sliders with their floors (face 0) or with one of their stops."""
         return states.contacts((self._pad(place), self._numbers[place][face]) for place in places)
 
     def faults(self, states: States) -> Iterator[SceneFailure]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Torsion springs of a truss in YADE, from their own section and from joints."""
+"""Torsion springs of a truss in YADE: those of the case, and those that represent joints."""
 from __future__ import annotations
 
 from math import atan2, cos, pi, sin
@@ -13,10 +13,11 @@ from yade.minieigenHP import Vector3
 
 def torsion_spring(row: Row, bias_rad: float, nodes: list[Row], links: list[Row], ids: list[int],
                    **more: Any) -> sj.TorsionSpring:
-    """Return a spring on its own pair of links. Their directions keep the angle far from its jump at half a rotation. A
+    """Return a torsion spring on its own pair of links, whose directions keep the angle away from the jump at ±π. A
     link between two fixed points represents the ground.
 
-    :param row: links, stiffness and axis; the free angle is that of the reference configuration plus the bias
+    :param row: links, stiffness, axis and bias; the free angle is the angle of the reference configuration plus the
+        bias
     """
     first, second = row["links"]
     axis = Vector3(row["axis"])
