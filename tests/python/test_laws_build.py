@@ -226,7 +226,7 @@ def test_hash_is_that_of_the_build(tmp_path: Path) -> None:
 
 
 def test_other_kernel_and_two_of_one_name(folder: Path, tmp_path: Path, statejump, cases: Path) -> None:
-    """Unusable laws keep their names: a case that uses such a law reports the reason, other cases are not affected."""
+    """A case that uses an unusable law is refused with the reason. Cases with other laws run."""
     old = tmp_path / "old"
     old.mkdir()
     made = build.compile_law(build.find_compiler(), TOYS / "smooth.hpp", "0" * 64, old)

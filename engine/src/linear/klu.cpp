@@ -356,7 +356,8 @@ double SparseFactor::solutions_per_factorization() const {
 int SparseFactor::determinant_sign() const {
   Factors& f = *factors_;
   if (f.size == 0) return 1;
-  // Rows are divided by positive numbers, so only both permutations change the determinant's sign.
+  // KLU divides rows by positive numbers, which keeps the sign of the determinant. The permutations
+  // of rows and of columns may each reverse it.
   if (!f.now.odd_permutation) {
     f.now.odd_permutation =
         odd(f.now.numeric->Pnum, f.size) != odd(f.now.order->symbolic->Q, f.size);

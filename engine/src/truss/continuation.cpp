@@ -84,8 +84,8 @@ SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statu
   const double moved = converged ? length_of(to - z, system.displacements())
                                  : std::numeric_limits<double>::infinity();
   const bool near = moved <= jump_share * system.size();
-  // At a smooth extremum of a program, displacements are smaller than the tolerance of a solution,
-  // so several continuations do not differ.
+  // At a smooth extremum of the temperature nothing moves by more than the tolerance of a solution.
+  // If several continuations exist there, they have equal displacements, and any of them is valid.
   const bool rests = moved <= 2.0 * system.rounding(z).length;
   const bool is_solution =
       answer.count == Continuation::several ? rests : answer.count == Continuation::none && near;

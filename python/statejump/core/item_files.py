@@ -103,7 +103,7 @@ def _texts(numbers: np.ndarray, words: Numbering) -> Texts:
 
 
 def _joined(parts: list[np.ndarray]) -> np.ndarray:
-    """Join blocks of rows to one column. Shorter rows are padded to the length of the longest row."""
+    """Return all blocks of rows as one array. Shorter rows are padded to the length of the longest row."""
     if parts[0].ndim == 1:
         return np.concatenate(parts)
     width = max(part.shape[1] for part in parts)

@@ -187,7 +187,10 @@ class Table:
             yield self.line, row
 
     def _counted_on(self, before: int | None, cell: str) -> int | None:
-        """Return the number in a first column without a name. :raises Unreadable: it does not number the rows"""
+        """Return the row number in a first column that has no name.
+
+        :raises Unreadable: the cells of this column are not consecutive row numbers
+        """
         if not cell and before is None:
             return None
         if not cell.isdecimal() or (before is not None and int(cell) != before + 1):

@@ -79,7 +79,7 @@ def guided():
 
 
 def prismatic():
-    """Two tubes on hot links that slide in each other from stop to stop and also move across."""
+    """Two tubes, each held by a heated link, slide in each other from stop to stop and move transversely as well."""
     reset()
     program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3, cycles=5)
     walls = [body((0, 0, 0)), body((1, 0, 0))]

@@ -41,7 +41,8 @@ void commit_friction(const TimeStep& step, const StepContacts& contacts, Index i
   account.negative += std::min(heat, 0.0);
 }
 
-/// Commits the step for a contact with partial slip and its transverse contact.
+/// Stores state and energies at the end of a step for a contact with partial slip. Such a contact
+/// has a second tangential direction, whose contact follows it in the list.
 /// @param speeds of the contacts at the end of the step [m/s]
 void commit_partial_slip(const TimeStep& step, const StepContacts& contacts, Index owner,
                          const VectorXd& speeds, const VectorXd& along, EnergyAccount& account) {

@@ -45,8 +45,8 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
     check({JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus,
            JointStatus::stop_plus, JointStatus::stop_minus});
   }
-  // At z the soft stop on the plus side is in contact. Its deflection is within the play or beyond
-  // it.
+  // In the state z the soft stop on the plus side is compressed. The plays below are smaller or
+  // larger than this compression.
   slider.partial_slip = 0;
   slider.tangential_stiffness = 1e7;
   slider.clearance_minus = slider.clearance_plus = 1e-6;

@@ -240,8 +240,8 @@ class PartialSlipStep {
     const bool turns = std::abs(cross) > straight * std::abs(along) || along < 0.0;
     if (turns && depth < most_divisions && knots_left()) {
       const Knot middle = knot_at(a, b, 0.5);
-      // annulus in the middle: its |U| is the mean of both ends, so it is as close to its bound as
-      // they are
+      // The annulus in the middle gets the mean |U| of the two end annuli. Thus its distance from
+      // its slip limit is the mean of their distances.
       Knot annulus = middle;
       annulus.old = (0.5 * (a.old.norm() + b.old.norm())) * direction(middle.old);
       annulus.trial = annulus.old + annulus.fraction * slide_;
