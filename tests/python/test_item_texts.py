@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Text columns of tables: every distinct text is stored once, as numbered bytes."""
+"""Text columns of tables: every distinct text is stored once and has a number; a column stores these numbers."""
 from __future__ import annotations
 
 import random

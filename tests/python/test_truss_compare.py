@@ -101,7 +101,8 @@ def test_cable_goes_taut_and_slack_as_on_the_path(statejump, tmp_path: Path) -> 
 
 
 def test_ring_with_joints_that_stick_elastically_jumps_as_in_the_dem(statejump, tmp_path: Path) -> None:
-    """Elastic slips are about f/k_t, micrometres. With rigid sticking, final positions differ by a fifth of the loop.
+    """Solver and DEM agree. With rigid sticking instead, the solver's jump would differ by a fifth of the jump, because
+    elastic slips are about f/k_t, some micrometres.
     """
     made = generate.ring(6, sticking="elastic")
     outcome = statejump("compare", case_file(tmp_path, made))

@@ -36,7 +36,8 @@ ROUNDS_PER_CLUSTER = 8
 
 
 def rounds(folder: Path) -> Callable[[int], None]:
-    """Return the function of a round with the given number; its files overwrite those of the round before."""
+    """Return a function that runs one round. Its argument is the number of the round; files of the last round are
+    overwritten."""
     import statejump as sj
     from statejump.cli import main
 

@@ -17,7 +17,7 @@ def test_contact_begins_once_whatever_its_speed(seen, speed):
 
 
 def test_guide_planes_raise_failures(seen):
-    """GuidePlanes raises a failure once; it neither reports it again nor leaves a stop set for later runs."""
+    """GuidePlanes raises a failure once. It does not report it again, and the next run is not stopped."""
     kind, text, stop = seen["guided"]
     assert (kind, text) == ("RuntimeError", "time_step_unstable O.dt = 0.001 (contact 0 1)")
     assert stop == 0

@@ -131,8 +131,8 @@ class Condensed {
     rows_condensed_.push_back(row);
     const VectorXd response = of_.factors.solve(VectorXd::Unit(system_.unknowns(), row));
     responses_.emplace_back(response(seen_));
-    // On the base its row of the condensed matrix is an identity row; the other rows have their
-    // present status.
+    // In the condensed matrix the new row is an identity row, because it still has the status that
+    // was factored. The other rows have their present status.
     VectorXd column(n);
     for (Index i = 0; i < n; ++i) column[i] = along(now_[static_cast<std::size_t>(i)], n);
     inverse_.conservativeResize(n + 1, n + 1);

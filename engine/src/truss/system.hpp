@@ -335,9 +335,9 @@ class System {
                     const Statuses& statuses) const {
     return std::max(start.dashpot_force, dashpot_force(z, time, start, statuses));
   }
-  /// Whether the force of a joint with play is at most `force` at both ends of a step. With `force`
-  /// = idle_force() the time of a status change is then irrelevant: without dashpots the joint
-  /// force would vanish.
+  /// Whether the force of a joint with play is at most `force` at both ends of a step. If `force`
+  /// is idle_force(), only the dashpots of slack elements cause the joint's force. It then does not
+  /// matter when in the step the joint changes its status.
   bool is_idle(int joint, const VectorXd& from, const VectorXd& to, double force) const;
   /// Whether a joint has partial slip.
   bool slips_smoothly() const { return slips_smoothly_; }

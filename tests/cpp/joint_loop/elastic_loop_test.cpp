@@ -263,9 +263,9 @@ TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
 }
 
 TEST(ElasticLoop, IncrementsAreOfSecondOrder) {
-  // The cycle ends in a roll, so all of its path affects the result. Halving the step divides the
-  // error by 4. The shortened step before slip changes this ratio by 1/N, N = number of steps up to
-  // slip.
+  // At the end of the cycle the journal rolls, so the result depends on the whole path before.
+  // Halving the step divides the error by 4. The shortened step before slip changes this ratio by
+  // 1/N, N = number of steps up to slip.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     Eigen::Array2d values[4];
     for (int i = 0; i < 4; ++i) {

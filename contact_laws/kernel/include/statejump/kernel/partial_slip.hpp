@@ -70,8 +70,8 @@ class PartialSlipStep {
 
   /// Number of points, counted from the centre, that certainly stick and hence only move with the
   /// slide. Slip starts at the rim, so these are nearly all points of a sticking contact. The count
-  /// ends `neighbours` points before the first point that may slip. The remaining points are
-  /// projected and merged. While the prefix is valid, its points are not visited.
+  /// ends `neighbours` points before the first point that may slip. Only the points after it are
+  /// examined for slip; the counted points are stored as a prefix with one common displacement.
   int count_stuck() {
     constexpr int neighbours = 2;
     const int most = old_.size() - neighbours + 1;

@@ -45,8 +45,8 @@ struct SlipKnot {
 };
 using LineKnot = SlipKnot<double>;
 
-/// Passes all pieces at the end of a step to `sum`, from the centre to the edge.
-/// @param of function that returns the displacement of a memory point
+/// Adds the integrals of all intervals between knots at the end of a step to `sum`, from the centre
+/// to the edge. The function `of` returns the displacement of a memory point.
 /// @return the knot at the centre
 template <class Displacement, class Of, class Sum>
 SlipKnot<Displacement> add_pieces(double edge, double slope, const Displacement& slide,

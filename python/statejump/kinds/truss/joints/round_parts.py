@@ -56,7 +56,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
 
     @property
     def parts(self) -> tuple[str, str]:
-        """Names of both parts. The part at the position of the contact is first."""
+        """Names of both parts, the outer part first."""
         return self.outer, self.inner
 
     def _nodes(self, joints: ArraysType) -> np.ndarray:
