@@ -276,8 +276,9 @@ def check_display() -> None:
         raise _no_display("there is no display")
 
 
-def _no_display(cause: str, display: str | None = None) -> FailedRun:
-    return FailedRun(code="no_display", cause=cause, **{} if display is None else {"value": display})
+def _no_display(cause: str, **details: str) -> FailedRun:
+    more: dict[str, Any] = {"code": "no_display", "cause": cause, **details}
+    return FailedRun(**more)
 
 
 def view(values: Mapping[str, Any], folder: Path) -> None:
@@ -290,6 +291,6 @@ def view(values: Mapping[str, Any], folder: Path) -> None:
     status = subprocess.run(command_of(values, folder / RUNNER, view=True), env=environment, check=False).returncode
     if status == NO_DISPLAY:
         display = os.environ.get("DISPLAY", "")
-        raise _no_display(f"YADE cannot connect to the display {display!r}", display)
+        raise _no_display(f"YADE cannot connect to the display {display!r}", value=display)
     if status != 0:
         raise FailedRun(code="yade_view_ended", status=status, case=values["case"]["name"])
