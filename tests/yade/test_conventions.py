@@ -101,7 +101,7 @@ def test_values_of_another_type_give_a_sentence(seen):
 def test_values_out_of_range_give_a_sentence(seen):
     for name, (kind, text) in seen["ranges"].items():
         assert kind == "ValueError", name
-        assert re.match(rf"not_allowed [\w.]*{name}", text), text
+        assert name in text.split(" = ")[0], text
 
 
 def test_assignment_is_checked_as_construction_is(seen):
