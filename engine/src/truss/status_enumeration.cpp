@@ -155,8 +155,8 @@ Found try_all(const Branches& of, const Group& group, const Asking& asking) {
   Found found;
   Choice choice(of.candidates.size(), 0);
   const std::size_t sets = sets_of(of, group);
-  for (std::size_t set = 0; set < sets && found.requested.empty(); ++set) {
-    std::size_t left = set;
+  for (std::size_t number = 0; number < sets && found.requested.empty(); ++number) {
+    std::size_t left = number;
     for (const std::size_t i : group) {
       choice[i] = left % of.candidates[i].branches.size();
       left /= of.candidates[i].branches.size();

@@ -156,7 +156,7 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
 
 
 def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> None:
-    """Raise Unreadable if an object's name or attribute is not valid UTF-8, because the HTML report could not contain it."""
+    """Raise Unreadable if an object's name or attribute is not valid UTF-8, which the HTML report could not show."""
     texts = {place: place, **{f"{place}@{key}": value for key, value in item.attrs.items()}}
     for called, value in texts.items():
         try:
