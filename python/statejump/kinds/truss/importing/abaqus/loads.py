@@ -46,7 +46,7 @@ class State:
 
 
 def transform(model: Model, block: Block, scope: Scope) -> None:
-    """Read a *TRANSFORM: directions in which supports and loads act on the nodes of a set."""
+    """Read a ``*TRANSFORM`` card: directions in which supports and loads act on the nodes of a set."""
     kind = block.parameters.get("TYPE", "R").upper()[:1]
     values = model.numbers(*block.data[0]) if block.data else []
     if len(values) < 6:
