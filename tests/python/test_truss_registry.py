@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -93,3 +93,15 @@ def test_dem_refuses_elements_by_name() -> None:
     assert refused.value.code == "dem_large_rotation"
     assert repr(spring.name) in refused.value.cause
     dem.check(case.changed({f"torsion_spring.{spring.name}.bias_rad": -1.57}))
+
+
+def test_type_without_preselection_has_every_item_checked() -> None:
+    """Tables are checked by item only where a type selects items; a type that selects none must not skip its checks."""
+    class Unselective(JointType[Any, Any]):
+        def check_vectors(self, item: Any, dimension: int) -> None:
+            raise AssertionError
+
+    items: Any = [None, None]
+    assert Unselective().may_be_wrong_vectors(items, 3).all()
+    assert Unselective().may_be_wrong_references(items, cast(Any, None)).all()
+    assert not JointType[Any, Any]().may_be_wrong_vectors(items, 3).any()

@@ -229,7 +229,6 @@ struct SparseFactor::Factors {
     klu_symbolic* symbolic = nullptr;
   };
 
-  /// Arguments of KLU for a matrix. KLU takes no const pointers, but does not write to them.
   struct FreeNumeric {
     void operator()(klu_numeric* numeric) const {
       klu_common defaults;
@@ -247,6 +246,7 @@ struct SparseFactor::Factors {
     std::optional<bool> odd_permutation;  ///< Parity of rows and columns together, once computed.
   };
 
+  /// Arguments of KLU for a matrix. KLU takes no const pointers, but does not write to them.
   struct Arrays {
     int* columns;
     int* rows;

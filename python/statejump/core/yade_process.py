@@ -276,9 +276,8 @@ def check_display() -> None:
         raise _no_display("there is no display")
 
 
-def _no_display(cause: str, **details: str) -> FailedRun:
-    more: dict[str, Any] = {"code": "no_display", "cause": cause, **details}
-    return FailedRun(**more)
+def _no_display(cause: str, **details: Any) -> FailedRun:
+    return FailedRun(code="no_display", cause=cause, **details)
 
 
 def view(values: Mapping[str, Any], folder: Path) -> None:

@@ -137,12 +137,18 @@ class PartType(Generic[ItemType, ArraysType]):
         raise NotImplementedError
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_vectors` must check. The result must include all invalid items."""
-        return np.full(len(items), False)
+        """Return the items (n,) that :meth:`check_vectors` must check. The result must include all invalid items.
+
+        Default: all items, or none if the type has no vectors to check.
+        """
+        return np.full(len(items), type(self).check_vectors is not PartType.check_vectors)
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_references` must check. The result must include all invalid items."""
-        raise NotImplementedError
+        """Return the items (n,) that :meth:`check_references` must check. The result must include all invalid items.
+
+        Default: all items.
+        """
+        return np.full(len(items), True)
 
     def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
         """Return the items as arrays: their keys, except those of :meth:`derived`."""
