@@ -96,12 +96,15 @@ def test_values_of_another_type_give_a_sentence(seen):
         "ThermalProgram.tableTimes = [0, 'one']", "ThermalProgram.shape = 3", "SlotFace.normal = (0, 1)",
     )]
     assert seen["wrong_types"][-1][1].startswith("wrong_type ThermalLinks.links = [<")
+    assert seen["allowed_types"][:-1] == [
+        "a number", "a number", "a whole number", "a list of numbers", "a text", "three numbers"]
 
 
 def test_values_out_of_range_give_a_sentence(seen):
     for name, (kind, text) in seen["ranges"].items():
         assert kind == "ValueError", name
         assert name in text.split(" = ")[0], text
+        assert seen["allowed_ranges"][name] or re.search("allowed is", text), text
 
 
 def test_assignment_is_checked_as_construction_is(seen):

@@ -3,7 +3,7 @@
 import statejump_yade as sj
 from yade import wrapper
 
-from parts import finish, fault_of
+from parts import allowed_of, finish, fault_of
 
 
 def own_attributes(cls):
@@ -87,6 +87,15 @@ ranges = {
         **{**table, "tableTemperatureChanges": [0, 1]}
     ),
 }
+wrong_types = (
+    lambda: sj.Journal(radius="large"),
+    lambda: set_radius("large"),
+    lambda: sj.ThermalProgram(cycles=1.5),
+    lambda: sj.ThermalProgram(tableTimes=[0, "one"]),
+    lambda: sj.ThermalProgram(shape=3),
+    lambda: sj.SlotFace(normal=(0, 1)),
+    lambda: sj.ThermalLinks(links=[journal]),
+)
 spring = sj.spring(4, 2, stiffness=300.0, length=0.25, dampingRatio=0.1)
 finish(
     {
@@ -105,16 +114,10 @@ finish(
             for name in classes
         },
         "positional": fault_of(lambda: sj.Journal(0.005)),
-        "wrong_types": [fault_of(call) for call in (
-            lambda: sj.Journal(radius="large"),
-            lambda: set_radius("large"),
-            lambda: sj.ThermalProgram(cycles=1.5),
-            lambda: sj.ThermalProgram(tableTimes=[0, "one"]),
-            lambda: sj.ThermalProgram(shape=3),
-            lambda: sj.SlotFace(normal=(0, 1)),
-            lambda: sj.ThermalLinks(links=[journal]),
-        )],
+        "wrong_types": [fault_of(call) for call in wrong_types],
+        "allowed_types": [allowed_of(call) for call in wrong_types],
         "ranges": {name: fault_of(call) for name, call in ranges.items()},
+        "allowed_ranges": {name: allowed_of(call) for name, call in ranges.items()},
         "by_assignment": {str(v): fault_of(lambda v=v: set_radius(v)) for v in (-1.0, float("nan"))},
         "kept": journal.radius,
         "read_only": fault_of(lambda: setattr(link, "axialForce", 1.0)),

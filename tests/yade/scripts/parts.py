@@ -172,6 +172,13 @@ def fault_of(call) -> list[str]:
     return [kind, fault(sj.take_failure() or sj.take_refusal()) or text]
 
 
+def allowed_of(call) -> str:
+    """Return the allowed values that the refusal of a call states."""
+    sj.take_failure(), sj.take_refusal()  # earlier ones
+    sentence_of(call)
+    return (sj.take_refusal() or {"allowed": ""})["allowed"]
+
+
 def fault(taken) -> str:
     """Return a failure or refusal as 'CODE KEY = VALUE (PART BODIES)', without missing fields; '' for None."""
     if not taken:
