@@ -50,6 +50,8 @@ const char* to_string(NoteKind kind) {
       return "not_unique";
     case NoteKind::snap:
       return "snap";
+    case NoteKind::not_located:
+      return "not_located";
   }
   return "unknown";
 }
@@ -199,8 +201,9 @@ Path solve(const Model& model, const Options& options) {
       bool foresaw = false;
       int unconfirmed = 0;
       int swinging = 0;  // failed steps while elements were slack
-      follower.locates = true;
-      follower.flickers = false;
+      follower.passes_changes = follower.too_many_open(follower.time);
+      follower.flickers = follower.passes_changes;
+      follower.locates = !follower.flickers;
       int located = 0;  // changes while elements were slack
       int held = 0;     // remaining steps before a longer one is attempted
       follower.softest_level = 0.0;

@@ -83,6 +83,8 @@ struct PathFollower {
   /// solution.
   double softest_level = 0.0;
   bool flickers = false;     ///< Whether changes of status in this increment are no longer located.
+  /// Whether so many joints are open in this increment that their changes are not located.
+  bool passes_changes = false;
   double slack_level = 0.0;  ///< Level of the dashpots, see System::slack_stiffness().
   /// Decrease of the dashpot level after a step.
   static constexpr double softer = 0.25;
@@ -153,6 +155,7 @@ struct PathFollower {
   void refuse_buckled(double when);
   /// Whether elements are slack now or were earlier.
   bool has_slack() const { return is_slack || is_loose || noted.count(NoteKind::slack) > 0; }
+  bool too_many_open(double when);
   bool stiffen_slack(const Statuses& statuses);
   bool damp();
   StepEnd step_to(double target, double tolerance);

@@ -155,6 +155,20 @@ bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& s
   return is_loose;
 }
 
+/// Whether elements are slack and more than `most_open` joints are open. Such elements make and lose
+/// contact all the time, nearly without force, so that most steps would end at such changes. A note
+/// reports this.
+bool PathFollower::too_many_open(double when) {
+  constexpr std::ptrdiff_t most_open = 8;
+  if (!options.locate_events || !has_slack()) return false;
+  if (std::count(origin.statuses.begin(), origin.statuses.end(), JointStatus::open) <= most_open) {
+    return false;
+  }
+  if (noted.count(NoteKind::not_located) == 0) note(NoteKind::not_located, when, {});
+  noted[NoteKind::not_located];
+  return true;
+}
+
 /// Raises the level of the dashpots of slack joints. Returns false if no joint is open, or if the
 /// level is already the highest.
 bool PathFollower::stiffen_slack(const Statuses& statuses) {

@@ -88,7 +88,8 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   const double allowed = std::max(by_time, by_event) + rounding;
   // The error of work and heat is of fourth order in the step length, or higher.
   const double longer = step * std::sqrt(std::sqrt(0.5 * allowed / std::max(lost, rounding)));
-  const bool controlled = options.locate_events && !system.slips_smoothly();
+  const bool is_smooth = !system.slips_smoothly() && !system.has_kinks();
+  const bool controlled = options.locate_events && is_smooth && !passes_changes;
   if (controlled && step > shortest_balanced && lost > allowed && lost < 0.5 * refused_loss) {
     refused_loss = lost;
     steps_to_hold = most_held_steps;

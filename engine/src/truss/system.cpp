@@ -35,6 +35,7 @@ System::System(const Model& model)
           history_begin_.push_back(history_);
           history_ += one.history();
           slips_smoothly_ = slips_smoothly_ || one.slips_smoothly();
+          if constexpr (requires { one.has_kinks; }) has_kinks_ = has_kinks_ || one.has_kinks;
           if constexpr (requires { one.rolls(); }) {
             if (one.rolls()) rolling_.push_back(static_cast<int>(frames_.size()) - 1);
           }

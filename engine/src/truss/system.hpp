@@ -341,6 +341,9 @@ class System {
   bool is_idle(int joint, const VectorXd& from, const VectorXd& to, double force) const;
   /// Whether a joint has partial slip.
   bool slips_smoothly() const { return slips_smoothly_; }
+  /// Whether the force of a joint has kinks within a status. A step across a kink follows the law
+  /// exactly, but the quadrature of its work is only second-order accurate.
+  bool has_kinks() const { return has_kinks_; }
   /// Slide of a step minus the elastic deflection, without corrections of the slip error [m]; for a
   /// joint that rolls.
   Vector3d lag(int joint, const VectorXd& z, double time, const StepStart& start) const;
@@ -397,6 +400,7 @@ class System {
   int history_ = 0;
   int outputs_ = 0;
   bool slips_smoothly_ = false;
+  bool has_kinks_ = false;
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
   double path_scale_ = 0.0;

@@ -78,7 +78,8 @@ enum class NoteKind : unsigned char {
   slack,  ///< Joints without contact: statics does not determine the position of their elements.
   not_unique,  ///< Sticking joints constrain a displacement more than once: reactions are not
                ///< unique.
-  snap         ///< Unstable slip within the play of joints moved the truss by `value` [m] at once.
+  snap,        ///< Unstable slip within the play of joints moved the truss by `value` [m] at once.
+  not_located  ///< So many joints are open that the times of their changes are not located.
 };
 
 /// "large_start", …: the enumerator's name.

@@ -12,6 +12,11 @@ namespace statejump::truss {
 
 namespace {
 
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Roundings of a slide: displacements of two nodes, the position of the slider, and the error of
+/// Newton's method.
+constexpr double roundings = 64.0;
+
 double slide_of(const IwanJoint& joint, const Trial& trial) {
   return joint.axis.dot(trial.moved[0] - trial.moved[1]);
 }
@@ -53,16 +58,22 @@ struct Response {
   double beyond_minus = -std::numeric_limits<double>::infinity();  ///< Largest p − s − φ [m].
 };
 
+/// Force and tangent of a slide in one direction. A slider at its bound within rounding slips if the
+/// joint slips in that direction: in a short step rounding must not decide the tangent.
 /// @param before positions of all sliders at the start of the step
 /// @param after receives the positions of all sliders at s, unless null
-Response respond(const IwanJoint& joint, double s, const double* before, double* after) {
+Response respond(const IwanJoint& joint, double s, JointStatus status, const double* before,
+                 double* after) {
   Response found;
   int i = 0;
   for_each_element(joint, [&](double stiffness, double reach, double, double) {
     const double bend = s - before[i];
     const double kept = std::clamp(bend, -reach, reach);
     found.force += stiffness * kept;
-    if (std::abs(bend) <= reach) {
+    const double rounding = roundings * epsilon * (std::abs(s) + std::abs(before[i]));
+    const double plus = status == JointStatus::slip_plus ? -rounding : 0.0;
+    const double minus = status == JointStatus::slip_minus ? -rounding : 0.0;
+    if (bend - reach <= plus && -bend - reach <= minus) {
       found.tangent += stiffness;
     } else {
       ++found.slipping;
@@ -156,7 +167,7 @@ JointFrame IwanJoint::frame(const Model& model) const {
 void IwanJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const {
   const double s = slide_of(*this, trial);
   detail::push_along(trial, axis, writer);
-  Response now = respond(*this, s, trial.history, nullptr);
+  Response now = respond(*this, s, status, trial.history, nullptr);
   if (!is_slip(status)) {
     now = {};
     int i = 0;
@@ -175,7 +186,7 @@ void IwanJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
 }
 
 JointStatus IwanJoint::decide(const Trial& trial, JointStatus status) const {
-  const Response now = respond(*this, slide_of(*this, trial), trial.history, nullptr);
+  const Response now = respond(*this, slide_of(*this, trial), status, trial.history, nullptr);
   const double rounding = trial.length_rounding;
   if (status == JointStatus::slip_plus && now.beyond_plus >= -rounding) return status;
   if (status == JointStatus::slip_minus && now.beyond_minus >= -rounding) return status;
@@ -188,12 +199,12 @@ void IwanJoint::begin(const Trial& trial, JointStatus, double* now) const {
   // Memory at the start: one loading from the reference configuration, where all sliders are at
   // zero.
   const std::vector<double> drawn(static_cast<std::size_t>(history()), 0.0);
-  respond(*this, slide_of(*this, trial), drawn.data(), now);
+  respond(*this, slide_of(*this, trial), JointStatus::stick, drawn.data(), now);
 }
 
 void IwanJoint::commit(const Trial& trial, JointStatus status, double* after) const {
   if (is_slip(status)) {
-    respond(*this, slide_of(*this, trial), trial.history, after);
+    respond(*this, slide_of(*this, trial), status, trial.history, after);
   } else {
     std::copy_n(trial.history, history(), after);
   }

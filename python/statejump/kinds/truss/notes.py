@@ -32,6 +32,9 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> str:
     if note["kind"] == "snap":
         return (f"{_named(note['joints'])}: slip runs away within the play {at}; dashpots in the joints carry the "
                 f"structure on to a stable position, {note['value']:.3g} m away")
+    if note["kind"] == "not_located":
+        return (f"many elements are slack {at}: from there the times at which their joints make and lose contact are "
+                "resolved to one increment; more reduced.increments_per_branch resolve them better")
     return (f"{_named(note['joints'])}: constrain a displacement more than once {at}; the reactions are one solution "
             "of many, the displacements are unique")
 

@@ -161,6 +161,7 @@ struct Seat {
 /// | `clearance_growth()` | growth of a clearance by its temperature [m/K] |
 /// | `contact_force()` | force against which that growth works [N] |
 /// | `beyond_edges()` | distance beyond each edge at which the stiffness jumps [m] |
+/// | `has_kinks` | its force has kinks within a status, which no step ends at |
 /// | `slack_motion()` | motion of an open joint since the start of the step [m] |
 ///
 /// @pre of all but validate(): the joint and the truss around it are valid. evaluate() writes the

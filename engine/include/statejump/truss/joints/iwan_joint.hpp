@@ -61,6 +61,7 @@ struct IwanJoint {
 
   static constexpr const char* kind = "iwan_joint";
   static constexpr int slide_row = 0;
+  static constexpr bool has_kinks = true;
   int history() const { return elements + 1; }
   static std::span<const Parameter<IwanJoint>> parameters();
   static std::span<const Output> outputs();
