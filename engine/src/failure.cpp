@@ -44,7 +44,8 @@ std::string movers(const std::vector<FailureMode>& modes) {
   for (const FailureMode& mode : modes) {
     if (!text.empty()) text += "; ";
     for (std::size_t k = 0; k < mode.size(); ++k) {
-      text += (k == 0 ? "node '" : ", node '") + mode[k].node + "' mostly along " + mode[k].along;
+      text += (k == 0 ? "node '" : ", node '") + mode[k].node +
+              (mode[k].rotates ? "' mostly about " : "' mostly along ") + mode[k].along;
     }
   }
   return text;

@@ -190,6 +190,16 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
       std::tie(node.free_directions, node.freedoms) = found->second;
       model.nodes.push_back(std::move(node));
     }
+    if (nodes_.contains("fixed_rotations")) {
+      const auto clamped = table.flags("fixed_rotations", 3);
+      const auto moment = table.numbers("moment_N_m", 3);
+      for (std::size_t i = 0; i < table.size(); ++i) {
+        truss::Node& node = model.nodes[i];
+        node.moment = row(moment, i);
+        std::tie(node.rotation_directions, node.rotations) =
+            free_directions(clamped.data() + 3 * i, Vector3d::Zero());
+      }
+    }
   }
   truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
     using Type = truss::ElementType<k>;
@@ -205,6 +215,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
     }
   });
   model.constraints = constraints_of(constraints_);
+  truss::measure_rotations(model);
   return model;
 }
 
@@ -275,6 +286,7 @@ py::dict states_dict(const truss::Model& model, const std::vector<truss::State>&
   d["time_s"] = scalars(states, &State::time);
   d["temperature_change_K"] = scalars(states, &State::temperature_change);
   d["displacement_m"] = stacked(states, &State::displacement, 3);
+  if (!model.beams.empty()) d["rotation_rad"] = stacked(states, &State::rotation, 3);
   truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
     using Type = truss::ElementType<k>;
     const std::size_t count = std::get<k>(model.lists()).size();
@@ -531,7 +543,8 @@ py::dict type_dict() {
 constexpr const char* about_path =
     "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
     "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
-    "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
+    "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3); with beams\n"
+    "fixed_rotations (n, 3), moment_N_m (n, 3)\n"
     "elements: table -> such a dict, with the arrays that truss_elements() lists for it\n"
     "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n"
     "constraints: names, nodes (terms,) and coefficients (terms, 3) of each: a sum that is 0\n\n"

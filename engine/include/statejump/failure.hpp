@@ -37,6 +37,7 @@ const char* to_string(FailureKind kind);
 struct ModeNode {
   std::string node;
   char along;
+  bool rotates = false;  ///< Its motion is a rotation about that direction.
 };
 
 /// The nodes with the largest motion in one mode.

@@ -74,9 +74,9 @@ namespace detail {
 void System::assemble_elements(const Region& region, const std::vector<double>& changes,
                                AssemblyStrand& to) const {
   ElementWriter writer(dofs_, to);
-  for (const int node : region.loaded) {
-    const Vector3d& load = model_->nodes[index(node)].load;
-    writer.force(node, -load);
+  for (const int site : region.loaded) {
+    const Vector3d load = load_on(site);
+    writer.force(site, -load);
     writer.carries(load.lpNorm<Eigen::Infinity>());
   }
   const ElementState state(drawn_, to.moved(), changes);

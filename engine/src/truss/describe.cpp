@@ -28,12 +28,11 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
   state.element_output.resize(element_outputs_);
   state.joint_output.resize(outputs_);
   state.joint_status = now.statuses;
-  displacements(z, state.displacement);
-  const Eigen::Matrix3Xd& moved = state.displacement;
+  Eigen::Matrix3Xd sites;
+  Eigen::Matrix3Xd& moved = dofs_.has_rotations() ? sites : state.displacement;
+  displacements(z, moved);
   state.load_potential = 0.0;
-  for (int i = 0; i < size(model.nodes); ++i) {
-    state.load_potential -= model.nodes[index(i)].load.dot(moved.col(i));
-  }
+  for (int i = 0; i < moved.cols(); ++i) state.load_potential -= load_on(i).dot(moved.col(i));
   state.elastic_energy = 0.0;
   // Energies are added in the order of the elements, so that the sum does not depend on the number
   // of threads.
@@ -46,6 +45,12 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
   };
   const std::vector<double> changes = temperature_changes(time);
   const ElementState at_elements(drawn_, moved, changes);
+  if (dofs_.has_rotations()) {
+    check_rotations(at_elements);
+    state.displacement = moved.leftCols(size(model.nodes));
+    state.rotation = moved.rightCols(size(model.nodes));
+    for (int i = 0; i < size(model.nodes); ++i) state.rotation.col(i) /= model.nodes[index(i)].arm;
+  }
   double* outputs_of_type = state.element_output.data();
   each_element_type(
       [&]<class Type>(const std::vector<Type>& elements, const auto& frames, std::size_t) {

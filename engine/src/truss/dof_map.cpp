@@ -21,14 +21,15 @@ constexpr std::size_t nodes_at_once = 50000;
 /// moves_along() [-].
 constexpr double least_motion = 1e-9;
 
-/// Whether an element with 6 dofs per node is attached to a node, for every node.
+/// Whether an element rotates a node, for every node.
 std::vector<bool> rotating_nodes(const Model& model) {
+  const auto nodes = static_cast<int>(model.nodes.size());
   std::vector<bool> rotates(model.nodes.size(), false);
   const auto ask = [&]<class Type>(const std::vector<Type>& elements) {
     if constexpr (Type::dofs_per_node == 6) {
       for (const Type& one : elements) {
-        for (const int node : one.frame(model).nodes) {
-          if (node >= 0) rotates[static_cast<std::size_t>(node)] = true;
+        for (const int site : one.frame(model).nodes) {
+          if (site >= nodes) rotates[static_cast<std::size_t>(site - nodes)] = true;
         }
       }
     }
@@ -46,21 +47,25 @@ DofMap::DofMap(const Model& model, const std::vector<bool>& rotates) {
   const auto is_dependent = [&](int node, int direction) {
     return eliminated.sums.count(place_of(node, direction)) > 0;
   };
-  nodes_.reserve(model.nodes.size() + 1);
-  for (const Node& node : model.nodes) {
-    const auto which = static_cast<int>(nodes_.size());
-    const int rotations = rotates[nodes_.size()] ? 3 : 0;
-    nodes_.push_back({dofs_, node.freedoms, &node.free_directions.matrix(), rotations});
-    for (int i = 0; i < node.freedoms; ++i) dofs_ += is_dependent(which, i) ? 0 : 1;
+  count_ = model.nodes.size();
+  const bool any = std::find(rotates.begin(), rotates.end(), true) != rotates.end();
+  sites_.resize((any ? 2 : 1) * count_ + 1);
+  for (std::size_t which = 0; which < count_; ++which) {
+    const Node& node = model.nodes[which];
+    sites_[which] = {dofs_, node.freedoms, &node.free_directions.matrix()};
+    for (int i = 0; i < node.freedoms; ++i)
+      dofs_ += is_dependent(static_cast<int>(which), i) ? 0 : 1;
+    if (!any) continue;
+    const int rotations = rotates[which] ? node.rotations : 0;
+    sites_[count_ + which] = {dofs_, rotations, &node.rotation_directions.matrix()};
     dofs_ += rotations;
   }
-  nodes_.emplace_back();
   if (!eliminated.sums.empty()) add_sums(eliminated);
 }
 
 void DofMap::add_sums(const Elimination& eliminated) {
   const auto row_of = [&](int place) {
-    int row = nodes_[static_cast<std::size_t>(place / 3)].row;
+    int row = sites_[static_cast<std::size_t>(place / 3)].row;
     for (int before = place - place % 3; before < place; ++before) {
       row += eliminated.sums.count(before) > 0 ? 0 : 1;
     }
@@ -69,7 +74,7 @@ void DofMap::add_sums(const Elimination& eliminated) {
   std::map<int, DofSums> of_nodes;
   for (const auto& [place, unused] : eliminated.sums) of_nodes[place / 3] = {};
   for (auto& [node, sums] : of_nodes) {
-    for (int i = 0; i < nodes_[static_cast<std::size_t>(node)].freedoms; ++i) {
+    for (int i = 0; i < sites_[static_cast<std::size_t>(node)].freedoms; ++i) {
       const int own = place_of(node, i);
       const auto dependent = eliminated.sums.find(own);
       if (dependent == eliminated.sums.end()) {
@@ -82,18 +87,18 @@ void DofMap::add_sums(const Elimination& eliminated) {
     }
   }
   sums_ = std::make_shared<const std::map<int, DofSums>>(std::move(of_nodes));
-  for (const auto& [node, sums] : *sums_) nodes_[static_cast<std::size_t>(node)].sums = &sums;
+  for (const auto& [node, sums] : *sums_) sites_[static_cast<std::size_t>(node)].sums = &sums;
 }
 
 int DofMap::node_of(int dof) const {
-  const auto nodes = nodes_.end() - 1;
-  const auto after = std::upper_bound(nodes_.begin(), nodes, dof,
+  const auto end = sites_.begin() + static_cast<std::ptrdiff_t>(count_);
+  const auto after = std::upper_bound(sites_.begin(), end, dof,
                                       [](int row, const NodeDofs& at) { return row < at.row; });
-  return static_cast<int>(after - nodes_.begin()) - 1;
+  return static_cast<int>(after - sites_.begin()) - 1;
 }
 
-Eigen::Vector3d DofMap::displacement(int node, const Eigen::VectorXd& z) const {
-  const NodeDofs& at = nodes_[static_cast<std::size_t>(node)];
+Eigen::Vector3d DofMap::displacement(int site, const Eigen::VectorXd& z) const {
+  const NodeDofs& at = sites_[static_cast<std::size_t>(site)];
   if (at.sums != nullptr) return *at.directions * along_directions(at, z);
   const double* along = z.data() + at.row;
   switch (at.freedoms) {
@@ -110,8 +115,8 @@ Eigen::Vector3d DofMap::displacement(int node, const Eigen::VectorXd& z) const {
 }
 
 void DofMap::displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) const {
-  moved.resize(3, static_cast<Eigen::Index>(nodes_.size() - 1));
-  each_in_parallel(nodes_.size() - 1, nodes_at_once, [&](std::size_t i) {
+  moved.resize(3, static_cast<Eigen::Index>(sites()));
+  each_in_parallel(sites(), nodes_at_once, [&](std::size_t i) {
     moved.col(static_cast<Eigen::Index>(i)) = displacement(static_cast<int>(i), z);
   });
 }
@@ -119,7 +124,7 @@ void DofMap::displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) co
 Eigen::VectorXd DofMap::dofs_at(const Eigen::Matrix3Xd& moved) const {
   Eigen::VectorXd found = Eigen::VectorXd::Zero(dofs_);
   for (Eigen::Index n = 0; n < moved.cols(); ++n) {
-    const NodeDofs& at = nodes_[static_cast<std::size_t>(n)];
+    const NodeDofs& at = sites_[static_cast<std::size_t>(n)];
     int row = at.row;
     for (int i = 0; i < at.freedoms; ++i) {
       if (at.is_own(i, row)) found[row++] = at.directions->col(i).dot(moved.col(n));

@@ -19,13 +19,13 @@ struct DofTerm {
 /// The translations of a node along its free directions, each expressed as a sum of dofs.
 using DofSums = std::array<std::vector<DofTerm>, 3>;
 
-/// Degrees of freedom of one node: translations along the first `freedoms` of its free directions,
-/// then rotations. A default object has no dofs and represents the ground.
+/// Degrees of freedom of one site, which is the position of a node or its rotation: displacements
+/// along the first `freedoms` of its free directions. A default object has no dofs and represents
+/// the ground.
 struct NodeDofs {
-  int row = 0;       ///< Index of its first own dof.
-  int freedoms = 0;  ///< Number of translations.
+  int row = 0;  ///< Index of its first own dof.
+  int freedoms = 0;
   const Eigen::Matrix3d* directions = nullptr;
-  int rotations = 0;  ///< 3 where an element has 6 dofs per node, else 0.
   /// Translations of a node with constraints as sums of dofs. Null: each translation is a dof of
   /// the node.
   const DofSums* sums = nullptr;
@@ -52,8 +52,9 @@ namespace detail {
 
 struct Elimination;
 
-/// Numbering of the independent degrees of freedom of all nodes, node after node. Constraints
-/// determine the dependent ones; see Elimination.
+/// Numbering of the independent degrees of freedom of all nodes, node after node: its translations,
+/// then its rotations. Constraints determine the dependent ones; see Elimination. Sites are
+/// numbered as by rotation_of(); a model without rotations has no sites of rotations.
 class DofMap {
  public:
   /// @pre The model outlives this object.
@@ -62,17 +63,19 @@ class DofMap {
   DofMap(const Model& model, const std::vector<bool>& rotates);
 
   int dofs() const { return dofs_; }
-  /// Dofs of a node; −1: the ground.
-  const NodeDofs& at(int node) const {
-    return node < 0 ? nodes_.back() : nodes_[static_cast<std::size_t>(node)];
+  /// Dofs of a site; −1: the ground.
+  const NodeDofs& at(int site) const {
+    return site < 0 ? sites_.back() : sites_[static_cast<std::size_t>(site)];
   }
+  std::size_t sites() const { return sites_.size() - 1; }
+  bool has_rotations() const { return sites() > count_; }
   /// The node to which a dof belongs.
   int node_of(int dof) const;
-  /// Translation of a node at unknowns z [m].
+  /// Displacement of a site at unknowns z [m].
   Eigen::Vector3d displacement(int node, const Eigen::VectorXd& z) const;
-  /// Translations of all nodes at unknowns z [m].
+  /// Displacements of all sites at unknowns z [m].
   void displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) const;
-  /// The dofs for displacements of all nodes that satisfy the constraints.
+  /// The dofs for displacements of all sites that satisfy the constraints.
   Eigen::VectorXd dofs_at(const Eigen::Matrix3Xd& moved) const;
   /// Adds a force [N] on a node to `to`, the vector of forces on the dofs.
   void add_force(int node, const Eigen::Vector3d& force, Eigen::VectorXd& to) const;
@@ -84,7 +87,8 @@ class DofMap {
  private:
   void add_sums(const Elimination& eliminated);
 
-  std::vector<NodeDofs> nodes_;                         // one per node, then the ground
+  std::vector<NodeDofs> sites_;                         // one per site, then the ground
+  std::size_t count_ = 0;                               // of nodes
   std::shared_ptr<const std::map<int, DofSums>> sums_;  // of constrained nodes
   int dofs_ = 0;
 };

@@ -28,8 +28,8 @@ constexpr double stiff_joint = 100.0;
 /// The nodes that move most in a mode.
 FailureMode movers(const System& system, const VectorXd& mode) {
   const Model& model = system.model();
-  std::vector<std::pair<double, int>> nodes;
-  for (int n = 0; n < static_cast<int>(model.nodes.size()); ++n) {
+  std::vector<std::pair<double, int>> nodes;  // and their rotations
+  for (int n = 0; n < static_cast<int>(system.dofs().sites()); ++n) {
     nodes.emplace_back(system.displacement(n, mode).norm(), n);
   }
   std::stable_sort(nodes.begin(), nodes.end(),
@@ -40,7 +40,10 @@ FailureMode movers(const System& system, const VectorXd& mode) {
     const Vector3d moved = system.displacement(nodes[k].second, mode);
     Eigen::Index along = 0;
     moved.cwiseAbs().maxCoeff(&along);
-    found.push_back({model.nodes[index(nodes[k].second)].name, "xyz"[along]});
+    const auto site = index(nodes[k].second);
+    const bool rotates = site >= model.nodes.size();
+    found.push_back(
+        {model.nodes[rotates ? site - model.nodes.size() : site].name, "xyz"[along], rotates});
   }
   return found;
 }

@@ -33,6 +33,17 @@ void check_axis(const std::string& item, const Eigen::Vector3d& axis) {
   check(std::abs(axis.norm() - 1.0) < 1e-9, item, "length of the axis", axis.norm(), "1");
 }
 
+/// Rejects free directions that are not orthonormal.
+void check_directions(const std::string& item, const Eigen::Matrix3d& directions, int free) {
+  const Eigen::Matrix3d product = directions.transpose() * directions;
+  for (int i = 0; i < free; ++i) {
+    for (int j = 0; j < free; ++j) {
+      check(std::abs(product(i, j) - (i == j ? 1.0 : 0.0)) < 1e-12, item,
+            "product of free directions", product(i, j), "1 or, of different ones, 0");
+    }
+  }
+}
+
 /// Allowed range of a number as text: "finite, > 0 N".
 std::string range(Allowed allowed, const std::string& unit) {
   const std::string with_unit = unit == "-" ? "" : " " + unit;
@@ -162,14 +173,11 @@ void Model::validate() const {
     check(node.position.allFinite(), item, "position", node.position.norm(), "finite [m]");
     check(node.load.allFinite(), item, "load", node.load.norm(), "finite [N]");
     check(node.freedoms >= 0 && node.freedoms <= 3, item, "freedoms", node.freedoms, "0 to 3");
-    const Eigen::Matrix3d product =
-        node.free_directions.matrix().transpose() * node.free_directions.matrix();
-    for (int i = 0; i < node.freedoms; ++i) {
-      for (int j = 0; j < node.freedoms; ++j) {
-        check(std::abs(product(i, j) - (i == j ? 1.0 : 0.0)) < 1e-12, item,
-              "product of free directions", product(i, j), "1 or, of different ones, 0");
-      }
-    }
+    check_directions(item, node.free_directions.matrix(), node.freedoms);
+    check(node.moment.allFinite(), item, "moment", node.moment.norm(), "finite [N m]");
+    check(node.rotations >= 0 && node.rotations <= 3, item, "rotations", node.rotations, "0 to 3");
+    check(std::isfinite(node.arm) && node.arm > 0.0, item, "arm", node.arm, "finite, > 0 m");
+    check_directions(item, node.rotation_directions.matrix(), node.rotations);
   }
   const auto check_elements = [&](const auto& elements) {
     for (const auto& one : elements) {
@@ -197,6 +205,21 @@ std::vector<int> Model::redundant_constraints() const {
 double Model::lowest_strain(int program, double per_kelvin) const {
   const TemperatureRange range = range_of(programs[static_cast<std::size_t>(program)]);
   return std::min(per_kelvin * range.lowest, per_kelvin * range.highest);
+}
+
+void measure_rotations(Model& model) {
+  std::vector<double> longest(model.nodes.size(), 0.0);
+  for (const Beam& beam : model.beams) {
+    const auto one = static_cast<std::size_t>(beam.first);
+    const auto other = static_cast<std::size_t>(beam.second);
+    if (one >= longest.size() || other >= longest.size()) continue;  // validate() rejects it
+    const double length = (model.nodes[other].position - model.nodes[one].position).norm();
+    longest[one] = std::max(longest[one], length);
+    longest[other] = std::max(longest[other], length);
+  }
+  for (std::size_t n = 0; n < longest.size(); ++n) {
+    if (longest[n] > 0.0) model.nodes[n].arm = longest[n];
+  }
 }
 
 void scale_misfits(Model& model, double fraction) {

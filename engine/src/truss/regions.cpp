@@ -38,7 +38,7 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
       for (const int node : frame.nodes) {
         const NodeDofs& at = dofs.at(node);
         if (at.sums == nullptr) {
-          if (at.freedoms + at.rotations > 0) made.push_back(node);
+          if (at.freedoms > 0) made.push_back(node);
           continue;
         }
         // Its entries belong to the nodes whose dofs determine its motion.
@@ -74,10 +74,10 @@ Regions regions_of(const Model& model, const DofMap& dofs, const ElementFrames& 
   const Lists nodes_of = moving_nodes(dofs, elements, joints);
   const std::size_t count = std::min(most_regions, nodes_of.size() / least_parts);
   Regions made;
-  std::vector<int> region_of_node(model.nodes.size(), -1);
+  std::vector<int> region_of_node(dofs.sites(), -1);
   if (count > 1) {
     made.apart.resize(count);
-    region_of_node = cut(nodes_of, model.nodes.size(), count);
+    region_of_node = cut(nodes_of, dofs.sites(), count);
   }
   const auto region = [&](int which) -> Region& {
     return which < 0 ? made.between : made.apart[index(which)];
@@ -104,6 +104,12 @@ Regions regions_of(const Model& model, const DofMap& dofs, const ElementFrames& 
     if (model.nodes[n].load.isZero(0.0)) continue;
     const bool is_constrained = dofs.at(static_cast<int>(n)).sums != nullptr;
     region(is_constrained ? -1 : region_of_node[n]).loaded.push_back(static_cast<int>(n));
+  }
+  if (!dofs.has_rotations()) return made;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    const int site = rotation_of(model, static_cast<int>(n));
+    if (model.nodes[n].moment.isZero(0.0) || dofs.at(site).freedoms == 0) continue;
+    region(region_of_node[index(site)]).loaded.push_back(site);
   }
   return made;
 }

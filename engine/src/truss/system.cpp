@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::truss::detail {
 
@@ -76,8 +79,38 @@ void System::find_scales() {
     }
   });
   for (const Node& node : model.nodes) force = std::max(force, node.load.norm());
+  for (std::size_t site = model.nodes.size(); site < dofs_.sites(); ++site) {
+    force = std::max(force, load_on(static_cast<int>(site)).norm());
+  }
   const double by_force = stiffness_scale_ > 0.0 ? force / stiffness_scale_ : 0.0;
   path_scale_ = std::max(strain * size_, by_force);
+}
+
+Vector3d System::load_on(int site) const {
+  const int nodes = static_cast<int>(model_->nodes.size());
+  if (site < nodes) return model_->nodes[index(site)].load;
+  const Node& node = model_->nodes[index(site - nodes)];
+  return node.moment / node.arm;
+}
+
+void System::check_rotations(const ElementState& at) const {
+  each_element_type([&](const auto& elements, const auto& frames, std::size_t) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      if constexpr (requires { elements[i].check_state(frames[i], at); }) {
+        elements[i].check_state(frames[i], at);
+      }
+    }
+  });
+  const int nodes = static_cast<int>(model_->nodes.size());
+  for (int n = 0; n < nodes && dofs_.has_rotations(); ++n) {
+    // A rotation about one axis has no limit.
+    if (dofs_.at(nodes + n).freedoms < 2) continue;
+    const Node& node = model_->nodes[index(n)];
+    const double rotation = at.moved(nodes + n).norm() / node.arm;
+    if (rotation <= largest_rotation) continue;
+    throw kernel::OutOfRange("node '" + node.name + "'", "rotation", rotation,
+                             "at most 5.5 rad about changing axes");
+  }
 }
 
 double System::reach(const VectorXd& z) const {

@@ -89,8 +89,10 @@ ElementFrames frames_of_elements(const Model& model);
 /// Equations of a truss: layout of the unknowns, residual, Jacobian, inequalities. Elements and
 /// joints contribute through their interfaces; this class does not depend on their types.
 ///
-/// Unknowns z: free displacements of the nodes [m], then joint forces [N]. Rows have the same
-/// order.
+/// Unknowns z: free displacements of the nodes and, where beams end, their rotation vectors times
+/// Node::arm [m]; then joint forces [N]. Rows have the same order. Rotation vectors start at the
+/// reference configuration. So unknowns are added, interpolated and extrapolated as vectors, and
+/// the tangent of the elements is symmetric in every state.
 class System {
  public:
   /// The model must outlive the system and be valid.
@@ -248,7 +250,9 @@ class System {
               const StepStart& start, JointModel joints, double opening) const;
 
   Vector3d displacement(int node, const VectorXd& z) const { return dofs_.displacement(node, z); }
-  /// Computes the displacements of all nodes [m] at z once, to evaluate many joints at this state.
+  /// Load on a node or, for its site rotation_of(), moment over Node::arm [N].
+  Vector3d load_on(int site) const;
+  /// Computes the displacements of all sites [m] at z once, to evaluate many joints at this state.
   void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
     dofs_.displacements(z, moved);
   }
@@ -373,6 +377,8 @@ class System {
   void assemble_elements(const Region& region, const std::vector<double>& changes,
                          AssemblyStrand& to) const;
   Assembly recorded(Parts parts) const;
+  /// Rejects a state with rotations beyond the range of the theory.
+  void check_rotations(const ElementState& at) const;
   /// Computes stiffness_scale() and path_scale().
   void find_scales();
   JointWriter joint_writer(int joint, AssemblyStrand& to) const;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "statejump/truss/elements/bar.hpp"
+#include "statejump/truss/elements/beam.hpp"
 #include "statejump/truss/elements/spring.hpp"
 #include "statejump/truss/elements/torsion_spring.hpp"
 
@@ -19,11 +20,12 @@ struct Elements {
   std::vector<Bar> links;
   std::vector<Spring> springs;
   std::vector<TorsionSpring> torsion_springs;
+  std::vector<Beam> beams;
 
   /// References to the lists, as a tuple.
   template <class Self>
   static auto lists_of(Self& self) {
-    return std::tie(self.links, self.springs, self.torsion_springs);
+    return std::tie(self.links, self.springs, self.torsion_springs, self.beams);
   }
   auto lists() { return lists_of(*this); }
   auto lists() const { return lists_of(*this); }

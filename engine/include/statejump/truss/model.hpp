@@ -43,7 +43,21 @@ struct Node {
   Directions free_directions;  ///< Orthonormal; the node may move in the first `freedoms` of them.
   int freedoms = 3;            ///< 0: fixed.
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
+
+  // The rest matters only where a beam ends; other nodes do not rotate.
+  Directions rotation_directions;  ///< The node may rotate about the first `rotations` of them.
+  int rotations = 3;               ///< 0: clamped.
+  /// Conjugate to the rotation vector of the node [N m]. Its potential is −moment · rotation
+  /// vector: it is conservative, and constant while the node rotates about the axis of the moment.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  /// A rotation counts as the displacement at this distance [m]. It is that at the far end of the
+  /// longest beam of the node, see measure_rotations().
+  double arm = 1.0;
 };
+
+/// Largest rotation of a node that may rotate about several axes [rad]. At 2π its rotation vector
+/// is not unique.
+constexpr double largest_rotation = 5.5;
 
 /// A term of a constraint: displacement of a node along a vector, times the vector's length.
 struct ConstraintTerm {
@@ -91,6 +105,15 @@ struct Model : Elements {
     return fraction * programs[static_cast<std::size_t>(program)].temperature_change(t);
   }
 };
+
+/// The site of a node's rotation. Sites are places where displacements are measured: first the
+/// positions of all nodes, then their rotations, in metres at the distance Node::arm.
+inline int rotation_of(const Model& model, int node) {
+  return static_cast<int>(model.nodes.size()) + node;
+}
+
+/// Sets Node::arm of all nodes of beams.
+void measure_rotations(Model& model);
 
 /// Multiplies the stress that all elements have in the reference configuration by a fraction.
 void scale_misfits(Model& model, double fraction);

@@ -63,6 +63,7 @@ struct State {
   double time = 0.0;                ///< [s]
   double temperature_change = 0.0;  ///< ΔT of the first program [K].
   Eigen::Matrix3Xd displacement;    ///< Of each node [m].
+  Eigen::Matrix3Xd rotation;        ///< Rotation vector of each node [rad]; empty without beams.
   Eigen::VectorXd element_output;   ///< Outputs of all elements; see element_output().
   Eigen::VectorXd joint_output;     ///< Outputs of all joints; see output().
   std::vector<JointStatus> joint_status;

@@ -11,7 +11,7 @@
 namespace statejump::truss {
 
 /// Adds the forces of elements on nodes, and their derivatives, to the rows of the nodes' dofs.
-/// Node −1, the ground, has no rows.
+/// Node −1, the ground, has no rows. Forces on sites of rotations are moments over Node::arm [N].
 class ElementWriter {
  public:
   ElementWriter(const detail::DofMap& dofs, AssemblyStrand& to) : dofs_(&dofs), to_(&to) {}
@@ -30,6 +30,15 @@ class ElementWriter {
   template <class Value>
   void block(int row_node, int column_node, Value&& value) {
     to_->block(at(row_node), at(column_node), value);
+  }
+  /// Adds the derivative of the force on one site with respect to the displacement of another.
+  void matrix(int row_site, int column_site, const Eigen::Matrix3d& value) {
+    if (residual_only()) return;
+    const NodeDofs& rows = at(row_site);
+    const NodeDofs& columns = at(column_site);
+    if (rows.freedoms == 0 || columns.freedoms == 0) return;
+    const Eigen::Matrix3d seen = rows.directions->transpose() * value * *columns.directions;
+    to_->block(rows, columns, [&](int i, int j) { return seen(i, j); });
   }
   /// Components of a vector along the free directions of a node.
   Eigen::Vector3d seen(int node, const Eigen::Vector3d& vector) const {

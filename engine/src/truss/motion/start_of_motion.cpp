@@ -10,6 +10,8 @@ namespace statejump::truss::detail {
 
 void check_motion(const Model& model, const MotionOptions& options) {
   model.validate();
+  kernel::require(model.beams.empty(), "count of beams in motion",
+                  static_cast<double>(model.beams.size()), "0: beams have quasi-static paths only");
   kernel::require(options.steps >= 1, "steps", static_cast<double>(options.steps), ">= 1");
   kernel::require(options.sample_every >= 1, "sample_every",
                   static_cast<double>(options.sample_every), ">= 1");

@@ -45,6 +45,9 @@ def check(case: TrussSections, links: Mapping[str, Any]) -> None:
                 raise NotAllowed("motion.masses", "lumped", code="lumped_mass_of_body", link=link.name, of=key)
         if link.centre_of_mass_m is not None and dimension == 3 and link.centre_of_mass_m[1]:
             raise NotAllowed("centre_of_mass_m", link.centre_of_mass_m, code="centre_not_on_line", **where)
+    for beam in case.beam if heavy else ():
+        if beam.density_kg_per_m3 is None:
+            raise MissingKey("density_kg_per_m3", code="mass_missing", item=f"beam {beam.name!r}")
     driven: dict[str, str] = {}
     for drive in case.drive:
         where = {"item": f"drive {drive.name!r}"}
@@ -76,6 +79,17 @@ def _check_program(drive: Drive, where: Mapping[str, Any]) -> None:
         if not after > before:
             raise NotAllowed("table_time_s", times, code="drive_times_not_increasing", after=after,
                              before=before, **where)
+
+
+def refuse_beams(truss: ResolvedTruss, what: str) -> None:
+    """Raise StatejumpError for a truss with beams in a model that has no rotations of nodes.
+
+    :param what: the model, for example "the motion of a truss"
+    """
+    found = truss.bending()
+    if found is not None:
+        section, name = found
+        raise StatejumpError(code="beams_not_supported", case=truss.name, part=f"{section} {name!r}", model=what)
 
 
 def check_at_rest(truss: ResolvedTruss) -> None:

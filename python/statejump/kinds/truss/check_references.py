@@ -14,12 +14,16 @@ from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
 from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
 from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
 from statejump.kinds.truss.sections import Link, TrussSections
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
 
-_WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
+_WITH_TEMPERATURE: list[JointType[Any, Any] | ElementType[Any, Any]] = [
+    *(joint for joint in JOINTS if joint.has_temperature),
+    *(element for element in ELEMENTS if element.has_temperature)]
 
 
 def check_references(case: TrussSections) -> None:
@@ -71,6 +75,10 @@ def _programs(case: TrussSections) -> None:
         for item in where_wrong(items, lambda items: places.of(items, "program") == UNKNOWN):
             if item.program is not None:
                 known_name("program", item.program, item.program, programs, "program", **where(item.name))
+    for beam in case.beam:
+        if beam.gradient_program is not None:
+            known_name("gradient_program", beam.gradient_program, beam.gradient_program, programs, "program",
+                       item=f"beam {beam.name!r}")
 
 
 def _expansions(case: TrussSections) -> None:

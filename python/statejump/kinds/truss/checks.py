@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from statejump.core import expansion, thermal
 from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.kinds.truss.arrays import said
 from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
 from statejump.kinds.truss.elements import ELEMENTS
@@ -43,6 +45,29 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
         raise NotAllowed("motion.theta", case.motion.theta, code="theta_without_equal_steps")
     if case.motion.scheme == "regularised":
         _regularised(case)
+
+
+def _rotations(case: TrussSections) -> None:
+    """Check the supports of rotations and the moments of nodes: only beams rotate nodes."""
+    dimension = case.truss.dimension
+    ends = {name for beam in case.beam for name in beam.nodes}
+
+    def wrong(nodes: ItemColumns[Node]) -> np.ndarray:
+        given = said(nodes, "moment_N_m")
+        for axis in "xyz":
+            given |= nodes.texts("fixed_rotations").has(axis)
+        return given
+
+    for node in where_wrong(case.node, wrong):
+        where: dict[str, Any] = {"item": f"node {node.name!r}", "nodes": (node.name,)}
+        for key in ("fixed_rotations", "moment_N_m"):
+            if getattr(node, key) and node.name not in ends:
+                raise NotAllowed(key, getattr(node, key), code="node_without_rotation", **where)
+        if dimension == 2 and set(node.fixed_rotations) - {"z"}:
+            raise NotAllowed("fixed_rotations", node.fixed_rotations, code="planar_rotations", **where)
+        if node.moment_N_m is not None and len(node.moment_N_m) != (1 if dimension == 2 else 3):
+            raise NotAllowed("moment_N_m", node.moment_N_m, code="wrong_dimension_of_moment",
+                             numbers="1 number" if dimension == 2 else "3 numbers", dimension=dimension, **where)
 
 
 def _regularised(case: TrussSections) -> None:
@@ -107,6 +132,7 @@ def _vectors(case: TrussSections) -> None:
         if dimension == 2 and "z" in node.fixed:
             raise NotAllowed("fixed", node.fixed, code="planar_directions", item=f"node {node.name!r}",
                              nodes=(node.name,))
+    _rotations(case)
     for kind in (*JOINTS, *ELEMENTS):
         for item in where_wrong(kind.listed(case), partial(kind.may_be_wrong_vectors, dimension=dimension)):
             kind.check_vectors(item, dimension)

@@ -139,6 +139,9 @@ def check(case: TrussCase) -> None:
     """Raise StatejumpError, before anything is solved, if the DEM cannot represent an item of the case."""
     truss = case.resolve()
     check_at_rest(truss)
+    bending = truss.bending()
+    if bending is not None:
+        raise refuse(case, "dem_element", f"{bending[0]} {bending[1]!r} bends, the DEM has no beams yet")
     for index in np.flatnonzero(truss.bodies.own)[:1]:
         raise refuse(case, "dem_body", f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
     for name in truss.constraints.names[:1]:

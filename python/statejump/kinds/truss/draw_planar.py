@@ -176,7 +176,10 @@ def _draw_springs(panel: Axes, truss: ResolvedTruss, height: float) -> None:
     for ends, style in styled_lines(truss):
         drawn = truss.nodes.position_m[ends, :2]
         few = len(ends) <= MOST_ZIGZAGS
-        if style.dashed:
+        look: dict[str, Any]
+        if style.width:
+            lines, look = list(drawn), {"linewidths": style.width}
+        elif style.dashed:
             lines, look = list(drawn), {"linewidths": 1.0, "linestyles": [DASHES]}
         else:
             lines = [_zigzag(a, b, 0.4 * height) if few else np.stack((a, b)) for a, b in drawn]

@@ -83,7 +83,8 @@ def _lines(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None
                                            zorder=2))
     for pairs, style in styled_lines(truss):
         if len(pairs):
-            axes.add_collection3d(Line3DCollection(list(positions[pairs]), colors=style.colour, linewidths=1.0,
+            axes.add_collection3d(Line3DCollection(list(positions[pairs]), colors=style.colour,
+                                                   linewidths=style.width or 1.0,
                                                    linestyles=[DASHES if style.dashed else "-"], zorder=1.5))
     guided = nodes.guide_normal.any(axis=1)
     if guided.any():

@@ -97,7 +97,7 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
     for ends, style in styled_lines(truss):
         if len(ends):
             found.append(entry(style.legend, color=style.colour, linestyle=DASHES if style.dashed else "-",
-                               linewidth=1))
+                               linewidth=style.width or 1))
     for element in ELEMENTS:
         elements = truss.elements[element.section]
         for one in element.symbols(truss, elements)[:1] if len(elements.names) else ():

@@ -15,6 +15,7 @@ from statejump.core.errors import Interrupted, NotAllowed, StatejumpError
 from statejump.core.start import FRICTIONLESS
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_mechanism import refuse_beams
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -136,6 +137,7 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
+    refuse_beams(truss, "a truss in motion")
     if truss.nodes.fixed[:, :truss.dimension].all():
         raise StatejumpError(code="no_free_dof", case=case.name)
     for joint in JOINTS if case.motion.start != "drawn" else ():

@@ -15,6 +15,7 @@ from statejump.kinds.truss.arrays import (
 )
 from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.beam import beam_weights_N
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
@@ -44,6 +45,9 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     if gravity.any():
         weights = weights_N(gravity, links.nodes, links.mass_kg, bodies, nodes.mass_kg)
         nodes = replace(nodes, force_N=nodes.force_N + weights)
+    elements = {element.section: element.resolve(element.listed(case), known) for element in ELEMENTS}
+    if gravity.any():
+        nodes = replace(nodes, force_N=nodes.force_N + beam_weights_N(gravity, elements["beam"], len(positions)))
 
     reflector = None
     if case.reflector is not None:
@@ -55,7 +59,7 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
         joints={joint.section: joint.resolve(joint.listed(case), known) for joint in JOINTS},
-        elements={element.section: element.resolve(element.listed(case), known) for element in ELEMENTS},
+        elements=elements,
         constraints=resolve_constraints(case.constraint, node_places), drives=resolve_drives(case.drive, known),
         programs=warmed.programs,
         program_names=warmed.program_names,
@@ -78,7 +82,24 @@ def _nodes(case: TrussSections, positions: np.ndarray) -> Nodes:
         guide_normal=unit(vectors(case.node, "guide_normal", dimension)),
         force_N=vectors(case.node, "force_N", dimension),
         mass_kg=column(case.node, "mass_kg"),
+        **_rotations(case),
     )
+
+
+def _rotations(case: TrussSections) -> dict[str, np.ndarray]:
+    """Return supports of rotations and moments of the nodes."""
+    count = len(case.node)
+    if not case.beam:
+        none = np.broadcast_to(0.0, (count, 3))
+        return {"fixed_rotations": none != 0, "moment_N_m": none}
+    clamped = np.stack([having(case.node, "fixed_rotations", axis) for axis in "xyz"], axis=1)
+    moment = np.zeros((count, 3))
+    for index, given in enumerate(values(case.node, "moment_N_m")):
+        if given is not None:
+            moment[index, 3 - len(given):] = given
+    if case.truss.dimension == 2:
+        clamped[:, :2] = True
+    return {"fixed_rotations": clamped, "moment_N_m": moment}
 
 
 def _links(case: TrussSections, nodes: np.ndarray, positions: np.ndarray, warmed: LinkTemperatures) -> Links:

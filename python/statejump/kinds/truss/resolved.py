@@ -37,6 +37,9 @@ class Nodes:
     guide_normal: np.ndarray  # (n, 3) unit vector without motion along it; zero: none
     force_N: np.ndarray  # (n, 3) dead load, including weights
     mass_kg: np.ndarray  # (n,) lumped masses, in addition to those of links
+    # Where beams end:
+    fixed_rotations: np.ndarray  # (n, 3) bool: no rotation about x, y, z; planar trusses: x and y everywhere
+    moment_N_m: np.ndarray  # (n, 3)
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,7 @@ class PullsNodes(Protocol):
     """Functions of an element type that a truss uses."""
 
     section: ClassVar[str]
+    bends: ClassVar[bool]
 
     def ends(self, elements: Any) -> np.ndarray:
         """Return the pairs of nodes (k, 2) that the elements connect."""
@@ -146,6 +150,13 @@ class ResolvedTruss:
     def springs(self) -> Any:
         """Its springs and cables, as :class:`.elements.spring.Springs`."""
         return self.elements["spring"]
+
+    def bending(self) -> tuple[str, str] | None:
+        """Return the section and the name of the first element that bends; None if none does."""
+        for element in self.element_types:
+            for name in self.elements[element.section].names if element.bends else ():
+                return element.section, name
+        return None
 
     def with_elements(self, **changed: Any) -> ResolvedTruss:
         """Return the truss with other elements in the named sections."""

@@ -86,11 +86,15 @@ def scene(case: TrussCase) -> dict[str, Any]:
     truss = case.resolve()
     nodes = [drawing.ref("history/position_m", name) for name in truss.nodes.names]
     parts: list[dict[str, Any]] = [
-        drawing.link(link.name, [nodes[end] for end in ends], _Section(truss, place))
+        drawing.link(link.name, [nodes[end] for end in ends], _Section(truss.links, place))
         for place, (link, ends) in enumerate(zip(case.link, truss.links.nodes))
     ]
     for element in ELEMENTS:
         elements = truss.elements[element.section]
+        if element.bends:
+            parts += [drawing.link(f"{element.section} {name}", [nodes[end] for end in ends], _Section(elements, place))
+                      for place, (name, ends) in enumerate(zip(elements.names, element.ends(elements)))]
+            continue
         for name, ends, stiffness in zip(elements.names, element.ends(elements), element.stiffness_N_per_m(elements)):
             parts.append({"name": f"{element.section} {name}", "type": "spring", "ends": [nodes[end] for end in ends],
                           "stiffness_N_per_m": float(stiffness)})
@@ -108,11 +112,11 @@ def scene(case: TrussCase) -> dict[str, Any]:
 
 
 class _Section:
-    """Section of a link for the drawing."""
+    """Section of a link or a beam for the drawing."""
 
-    def __init__(self, truss: ResolvedTruss, place: int) -> None:
+    def __init__(self, parts: Any, place: int) -> None:
         for key in ("cross_section_area_m2", "stress_free_length_m", "young_modulus_Pa", "thermal_expansion_per_K"):
-            setattr(self, key, float(getattr(truss.links, key)[place]))
+            setattr(self, key, float(getattr(parts, key)[place]))
 
 
 def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
@@ -296,6 +300,8 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
                sampler=lambda times: reduced_run(case, path, times))
     others = _heat_columns({key: sampled(values) for key, values in _heat_without_contact(states).items()})
     heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note=HEAT)
+    if "rotation_rad" in states:
+        others["rotation_rad"] = Column(sampled(states["rotation_rad"]), "rad", "nodes", note="rotation vector")
     return replace(run, history={**run.history, **others}, contacts={**run.contacts, "dissipation_J": heat_of_joints})
 
 

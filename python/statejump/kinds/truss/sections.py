@@ -48,6 +48,9 @@ class Node(Item):
     fixed: list[str] = texts([], "directions without motion", AXES)
     guide_normal: list[float] | None = numbers(None, "-", -1e9, 1e9, "no motion along it; of any length")
     force_N: list[float] | None = numbers(None, "N", -1e12, 1e12, "dead load; none")
+    fixed_rotations: list[str] = texts([], "axes about which it does not rotate; where beams end", AXES)
+    moment_N_m: list[float] | None = numbers(
+        None, "N m", -1e12, 1e12, "constant while it rotates about that axis; in a plane 1 number; where beams end")
     mass_kg: float = parameter(0.0, "kg", 0, 1e6, "of a body at it, as a piston, beside those of links; DEM and motion")
 
 

@@ -143,7 +143,8 @@ def _elements(truss: ResolvedTruss, table: str) -> dict[str, Any]:
 def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
     """Return the truss as tables and temperature programs of the engine."""
     return {
-        "nodes": _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
+        "nodes": _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N",
+                        *(("fixed_rotations", "moment_N_m") if truss.bending() else ())),
         "elements": {table: _elements(truss, table) for table in _engine.truss_elements()},
         "joints": {joint.section: _joints(truss, joint) for joint in JOINTS},
         "constraints": _table(truss.constraints, "nodes", "coefficients"),

@@ -182,7 +182,11 @@ class ConstrainedElements : public ElementContract<Type> {
 TYPED_TEST_SUITE(ConstrainedElements, AllTypes);
 
 TYPED_TEST(ConstrainedElements, GradientOfTheEnergyIsTheForce) {
-  ASSERT_EQ(this->dofs.dofs(), 4);
+  int rotations = 0;
+  for (std::size_t site = 4; site < this->dofs.sites(); ++site) {
+    rotations += this->dofs.at(static_cast<int>(site)).freedoms;
+  }
+  ASSERT_EQ(this->dofs.dofs() - rotations, 4);
   this->check_gradient_of_energy();
 }
 
@@ -261,8 +265,8 @@ TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
 TYPED_TEST(ElementContract, ForcesTurnWithTheStructure) {
   // With all nodes free, their dofs are displacement components along the axes.
   for (Node& node : this->model.nodes) {
-    node.freedoms = 3;
-    node.free_directions = Directions();
+    node.freedoms = node.rotations = 3;
+    node.free_directions = node.rotation_directions = Directions();
   }
   const Eigen::Matrix3d turn = Eigen::Quaterniond(0.5, -0.3, 0.7, 0.4).normalized().matrix();
   Model turned = this->model;
@@ -281,6 +285,7 @@ TYPED_TEST(ElementContract, ForcesTurnWithTheStructure) {
     using ElementContract<TypeParam>::energy;
     using ElementContract<TypeParam>::force;
     using ElementContract<TypeParam>::tangent;
+    using ElementContract<TypeParam>::dofs;
   };
   const Free here(this->model);
   const Free there(turned);
@@ -298,8 +303,8 @@ TYPED_TEST(ElementContract, ForcesTurnWithTheStructure) {
     for (Eigen::Index n = 0; n < q.size() / 3; ++n) {
       const Vector3d expected = turn * force.segment<3>(3 * n);
       EXPECT_LE((turned_force.segment<3>(3 * n) - expected).norm(), rounding);
-      sum += force.segment<3>(3 * n);
     }
+    for (int n = 0; n < 4; ++n) sum += force.segment<3>(here.dofs.at(n).row);
     // A translation does no work.
     EXPECT_LE(sum.norm(), rounding);
     EXPECT_NEAR(here.energy(i, q), there.energy(i, turned_q),
@@ -324,7 +329,8 @@ TYPED_TEST(ElementContract, MassMovesWithATranslation) {
   EXPECT_EQ(mass, mass.transpose());
   const double expected = testing::sample_mass(std::type_identity<TypeParam>());
   const Vector3d velocity(1.0, -2.0, 0.5);
-  const VectorXd translation = velocity.replicate(all.dofs() / 3, 1);
+  VectorXd translation = VectorXd::Zero(all.dofs());
+  for (int n = 0; n < 4; ++n) translation.segment<3>(all.at(n).row) = velocity;
   EXPECT_NEAR(translation.dot(mass * translation), expected * velocity.squaredNorm(),
               64.0 * epsilon * mass.norm() * translation.squaredNorm());
 }
@@ -386,18 +392,23 @@ TEST(DofMap, NumbersRotationsBehindTheTranslationsOfTheirNode) {
   const Model model = testing::four_nodes();  // with 3, 2, 1 and 0 translations
   const DofMap dofs(model, {false, true, false, true});
   EXPECT_EQ(dofs.dofs(), 3 + (2 + 3) + 1 + 3);
+  EXPECT_EQ(dofs.sites(), 8u);
   EXPECT_EQ(dofs.at(1).row, 3);
   EXPECT_EQ(dofs.at(1).freedoms, 2);
-  EXPECT_EQ(dofs.at(1).rotations, 3);
+  EXPECT_EQ(dofs.at(rotation_of(model, 1)).row, 5);
+  EXPECT_EQ(dofs.at(rotation_of(model, 1)).freedoms, 3);
+  EXPECT_EQ(dofs.at(rotation_of(model, 0)).freedoms, 0);
   EXPECT_EQ(dofs.at(2).row, 8);
-  EXPECT_EQ(dofs.at(3).row, 9);
-  EXPECT_EQ(dofs.at(-1).freedoms + dofs.at(-1).rotations, 0);
+  EXPECT_EQ(dofs.at(rotation_of(model, 3)).row, 9);
+  EXPECT_EQ(dofs.at(-1).freedoms, 0);
   for (const auto& [dof, node] :
        std::vector<std::pair<int, int>>{{2, 0}, {3, 1}, {7, 1}, {8, 2}, {9, 3}, {11, 3}}) {
     EXPECT_EQ(dofs.node_of(dof), node) << dof;
   }
   // Without an element that has rotations, no node has any.
-  EXPECT_EQ(DofMap(testing::sample(std::type_identity<Bar>())).dofs(), 6);
+  const DofMap bars(testing::sample(std::type_identity<Bar>()));
+  EXPECT_EQ(bars.dofs(), 6);
+  EXPECT_EQ(bars.sites(), 4u);
 }
 
 }  // namespace

@@ -53,6 +53,43 @@ inline Model sample(std::type_identity<TorsionSpring>) {
   return model;
 }
 
+/// Beams with every parameter, one curved in its stress-free shape by its misfit only. The nodes
+/// may rotate about three, two, one and no axes.
+inline Model sample(std::type_identity<Beam>) {
+  Model model = four_nodes();
+  for (std::size_t n = 1; n < 4; ++n) {
+    model.nodes[n].rotations = 3 - static_cast<int>(n);
+    model.nodes[n].rotation_directions = model.nodes[1].free_directions;
+  }
+  const auto beam = [&](const char* name, int first, int second, double length) {
+    Beam made;
+    made.name = name;
+    made.first = first;
+    made.second = second;
+    made.axial_stiffness = 3e5;
+    made.torsional_stiffness = 3e3;
+    made.bending_stiffness_y = 5e3;
+    made.bending_stiffness_z = 8e3;
+    made.stress_free_length = length;
+    made.thermal_expansion = 2e-5;
+    const Eigen::Vector3d along = model.nodes[static_cast<std::size_t>(second)].position -
+                                  model.nodes[static_cast<std::size_t>(first)].position;
+    made.axis_y = along.cross(Eigen::Vector3d(0.3, 0.2, 0.7)).normalized();
+    return made;
+  };
+  model.beams = {beam("AB", 0, 1, 1.22), beam("BC", 1, 2, 1.31), beam("CD", 2, 3, 1.30)};
+  model.beams[1].shear_stiffness_y = 2e4;
+  model.beams[1].shear_stiffness_z = 4e4;
+  model.beams[1].temperature_fraction = 0.5;
+  model.beams[1].gradient_program = 1;
+  model.beams[1].gradient_y = 3.0;
+  model.beams[1].gradient_z = -2.0;
+  model.beams[2].program = 1;
+  model.beams[2].gradient_z = 4.0;
+  measure_rotations(model);
+  return model;
+}
+
 /// Masses and moments of inertia for the elements of the samples.
 inline Inertia sample_inertia() {
   Inertia made;
@@ -71,6 +108,9 @@ inline double sample_mass(std::type_identity<Spring>) {
   return 0.0;
 }
 inline double sample_mass(std::type_identity<TorsionSpring>) {
+  return 0.0;
+}
+inline double sample_mass(std::type_identity<Beam>) {
   return 0.0;
 }
 

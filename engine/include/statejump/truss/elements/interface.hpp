@@ -31,7 +31,7 @@ struct TemperatureRange {
 class ElementState {
  public:
   /// @param drawn positions of the nodes [m] in the reference configuration at ΔT = 0
-  /// @param moved displacements of the nodes [m]
+  /// @param moved displacements of the nodes and, if nodes rotate, of their rotations [m]
   /// @param changes ΔT of the temperature programs [K]
   ElementState(const std::vector<Eigen::Vector3d>& drawn, const Eigen::Matrix3Xd& moved,
                const std::vector<double>& changes)
@@ -41,6 +41,8 @@ class ElementState {
   Eigen::Vector3d drawn_between(int from, int to) const {
     return (*drawn_)[static_cast<std::size_t>(to)] - (*drawn_)[static_cast<std::size_t>(from)];
   }
+  /// Displacement of a node or, for its site rotation_of(), rotation vector times Node::arm [m].
+  Eigen::Vector3d moved(int site) const { return moved_->col(site); }
   /// Displacement of a node relative to another one [m].
   Eigen::Vector3d moved_between(int from, int to) const {
     return moved_->col(to) - moved_->col(from);
@@ -81,10 +83,10 @@ struct Dashpot {
 /// |---|---|
 /// | `kind` | name in messages |
 /// | `table` | name of its table in the case |
-/// | `dofs_per_node` | 3: translations; 6: translations and rotations |
+/// | `dofs_per_node` | 3: translations; 6: translations and rotations, see rotation_of() |
 /// | `parameters()` | key, unit, range and source of each parameter |
 ///  `outputs()`, `describe()` | numbers that are output at every state |
-/// | `Frame`, `frame()` | its nodes (−1: ground) and fixed directions, computed once |
+/// | `Frame`, `frame()` | its nodes (−1: ground) with sites of rotations, and fixed directions |
 /// | `validate()` | rules beyond the ranges of single parameters |
 /// | `scale()` | see ElementScale |
 /// | `scale_misfit()` | multiplies its stress in the reference configuration by a fraction |
@@ -96,7 +98,8 @@ struct Dashpot {
 /// | `dashpot()` | its dashpot in motion; coefficients of 0: none |
 ///
 /// Optional: `beyond_edges()` returns how far the element is beyond the edge at which its stiffness
-/// jumps [m]; `has_edge()` returns whether there is one.
+/// jumps [m]; `has_edge()` returns whether there is one. `check_state()` rejects a state beyond the
+/// range of the theory.
 ///
 /// @pre of all but validate(): the element is valid. Only scale_misfit() modifies the element. The
 /// index of mass() and dashpot() is that of the element among those of its type.

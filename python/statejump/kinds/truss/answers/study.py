@@ -24,6 +24,7 @@ from statejump.kinds.truss.answers.outputs import Output, chosen_output
 from statejump.kinds.truss.answers.sensitivity import STEP, sensitivities
 from statejump.kinds.truss.answers.verdict import RESOLVED, Verdict, judged, others
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_mechanism import refuse_beams
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath
 from statejump.results.contents import Answers, Scalar
@@ -142,6 +143,7 @@ def study(
     STEPS.check("step", step)
     case = _of_cycles(case, cycles)
     truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
+    refuse_beams(truss, "the study of answers")
     with phase("path") as on_progress:
         found = quick_path(truss, increments, on_progress)
     asked = chosen_output(found, output)

@@ -34,6 +34,7 @@ class Lines:
     colour: str
     legend: str
     dashed: bool = False  # False: drawn as a zigzag if the drawing has room for it
+    width: float = 0.0  # of a solid line; 0: not a solid line
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ class ElementType(PartType[ItemType, ArraysType]):
     """An element type. ``section`` is the name of its list in a case file and its name in messages."""
 
     listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
+    bends: ClassVar[bool] = False  # it rotates its nodes; models without rotations refuse it
+    has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
 
     # ---------------------------------------------------------------- case
 
@@ -59,6 +62,10 @@ class ElementType(PartType[ItemType, ArraysType]):
     def may_be_wrong_keys(self, items: ItemColumns[ItemType]) -> np.ndarray:
         """Return the items (n,) that :meth:`check_keys` must check. The result must include all invalid items."""
         return np.full(len(items), False)
+
+    def expands(self, item: ItemType) -> bool:
+        """Return whether an element with a temperature expands with it."""
+        return False
 
     def check_geometry(self, truss: ResolvedTruss, elements: ArraysType) -> None:
         """Raise an error for invalid positions, directions and lengths."""

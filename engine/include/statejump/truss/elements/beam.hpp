@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "statejump/kernel/beam.hpp"
+#include "statejump/truss/elements/interface.hpp"
+
+namespace statejump::truss {
+
+/// Straight beam between two nodes that it bends and rotates, see kernel::BeamStep. Its temperature
+/// has a mean over the section and a gradient along each axis of the section.
+struct Beam {
+  std::string name;
+  int first = 0;                     ///< Node.
+  int second = 0;                    ///< Node.
+  double axial_stiffness = 0.0;      ///< E A [N], > 0.
+  double torsional_stiffness = 0.0;  ///< G J [N m²], > 0.
+  double bending_stiffness_y = 0.0;  ///< E I about axis y of the section [N m²], > 0.
+  double bending_stiffness_z = 0.0;  ///< E I about axis z of the section [N m²], > 0.
+  /// k G A for shear forces along y and z [N]; infinity: no shear deformation.
+  double shear_stiffness_y = std::numeric_limits<double>::infinity();
+  double shear_stiffness_z = std::numeric_limits<double>::infinity();
+  double stress_free_length = 0.0;  ///< l0 at ΔT = 0 [m], > 0.
+  double thermal_expansion = 0.0;   ///< α [1/K].
+  int program = 0;                  ///< Temperature program of the mean.
+  double temperature_fraction = 1;  ///< Mean ΔT over that of its program [-].
+  int gradient_program = 0;         ///< Temperature program of the gradients.
+  /// Gradients along the axes of the section over the ΔT of their program [1/m].
+  double gradient_y = 0.0;
+  double gradient_z = 0.0;
+  Eigen::Vector3d axis_y = Eigen::Vector3d::UnitY();  ///< Of the section, across the beam.
+
+  static constexpr const char* kind = "beam";
+  static constexpr const char* table = "beams";
+  static constexpr int dofs_per_node = 6;
+  struct Frame {
+    std::array<int, 4> nodes;    ///< Both nodes, then their rotations, see rotation_of().
+    std::array<double, 2> arms;  ///< Node::arm of both nodes [m].
+    kernel::Beam beam;
+  };
+  static std::span<const Parameter<Beam>> parameters();
+  static std::span<const Output> outputs();
+  void validate(const Model& model, std::span<const TemperatureRange> ranges) const;
+  Frame frame(const Model& model) const;
+  ElementScale scale(const Frame& frame, const std::vector<Eigen::Vector3d>& drawn) const;
+  void scale_misfit(const Model& model, double fraction);
+  void evaluate(const Frame& frame, const ElementState& state, ElementWriter& writer) const;
+  void thermal_rate(const Frame& frame, const ElementState& state,
+                    const std::vector<double>& program_rates, ElementWriter& writer) const;
+  double energy(const Frame& frame, const ElementState& state) const;
+  void describe(const Frame& frame, const ElementState& state, double* outputs) const;
+  double thermal_work(const Frame& frame, const detail::ThermalStep& step) const;
+  /// Beams in motion are not supported.
+  void mass(const Frame&, const Inertia&, std::size_t, MatrixWriter&) const {}
+  Dashpot dashpot(const Frame&, const Inertia&, std::size_t) const { return {}; }
+  /// Rejects a state in which an end has rotated by more than 1 rad relative to the beam.
+  void check_state(const Frame& frame, const ElementState& state) const;
+};
+
+static_assert(Element<Beam>);
+
+}  // namespace statejump::truss

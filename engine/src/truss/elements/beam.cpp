@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/truss/elements/beam.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "statejump/kernel/require.hpp"
+#include "statejump/truss/model.hpp"
+#include "truss/elements/axial.hpp"
+#include "truss/elements/writer.hpp"
+#include "truss/hermite.hpp"
+#include "truss/thermal_step.hpp"
+
+namespace statejump::truss {
+
+using detail::index;
+using Eigen::Vector3d;
+using kernel::BeamStep;
+using Matrix12 = BeamStep::Matrix12;
+using Vector12 = BeamStep::Vector12;
+
+namespace {
+
+std::string named(const Beam& beam) {
+  return std::string(Beam::kind) + " '" + beam.name + "'";
+}
+
+/// Displacements of both nodes [m] and their rotation vectors [rad].
+struct Moved {
+  std::array<Vector3d, 2> places;
+  std::array<Vector3d, 2> rotations;
+};
+
+/// @param moved_at displacement of a site [m]
+template <class MovedAt>
+Moved moved_of(const Beam::Frame& frame, MovedAt&& moved_at) {
+  return {{moved_at(frame.nodes[0]), moved_at(frame.nodes[1])},
+          {moved_at(frame.nodes[2]) / frame.arms[0], moved_at(frame.nodes[3]) / frame.arms[1]}};
+}
+
+Moved moved_of(const Beam::Frame& frame, const ElementState& state) {
+  return moved_of(frame, [&](int site) -> Vector3d { return state.moved(site); });
+}
+
+/// ΔT of the programs of mean and gradient [K].
+struct Temperatures {
+  double mean;
+  double gradient;
+};
+
+Temperatures temperatures(const Beam& beam, const ElementState& state) {
+  return {state.temperature_change(beam.program), state.temperature_change(beam.gradient_program)};
+}
+
+/// Stress-free curvatures about y and z per ΔT of the gradients' program [1/(m K)]. A fibre at y
+/// and z has the strain κ_y z − κ_z y.
+std::array<double, 2> curvature_per_kelvin(const Beam& beam) {
+  return {beam.thermal_expansion * beam.gradient_z, -beam.thermal_expansion * beam.gradient_y};
+}
+
+BeamStep step_at(const Beam& beam, const Beam::Frame& frame, const Vector3d& drawn,
+                 const Moved& moved, const Temperatures& at) {
+  const detail::Lengths length = detail::lengths(drawn, moved.places[1] - moved.places[0]);
+  const double change = beam.temperature_fraction * at.mean;
+  const double l0 = beam.stress_free_length;
+  const std::array<double, 2> curvature = curvature_per_kelvin(beam);
+  kernel::BeamState state;
+  state.along = length.along;
+  // Differences avoid the force error 1e-16 E A that the rounding of a length would cause.
+  state.stretch = length.growth + (length.drawn - l0) - l0 * beam.thermal_expansion * change;
+  state.first = kernel::rotation_of(moved.rotations[0]);
+  state.second = kernel::rotation_of(moved.rotations[1]);
+  state.free_length = thermal::length(l0, beam.thermal_expansion, change);
+  state.curvature = {curvature[0] * at.gradient, curvature[1] * at.gradient};
+  return {frame.beam, state};
+}
+
+BeamStep step_at(const Beam& beam, const Beam::Frame& frame, const ElementState& state) {
+  return step_at(beam, frame, state.drawn_between(frame.nodes[0], frame.nodes[1]),
+                 moved_of(frame, state), temperatures(beam, state));
+}
+
+/// Matrices that map the dofs of rotation of both nodes [m] to spins [rad].
+std::array<kernel::Matrix3, 2> spin_maps(const Beam::Frame& frame, const Moved& moved) {
+  return {kernel::spin_map(moved.rotations[0]) / frame.arms[0],
+          kernel::spin_map(moved.rotations[1]) / frame.arms[1]};
+}
+
+void write_forces(const Beam::Frame& frame, const std::array<kernel::Matrix3, 2>& maps,
+                  const Vector12& force, ElementWriter& writer) {
+  for (std::size_t end = 0; end < 2; ++end) {
+    const auto row = 6 * static_cast<Eigen::Index>(end);
+    writer.force(frame.nodes[end], force.segment<3>(row));
+    writer.force(frame.nodes[2 + end], maps[end].transpose() * force.segment<3>(row + 3));
+  }
+}
+
+}  // namespace
+
+std::span<const Parameter<Beam>> Beam::parameters() {
+  static const Parameter<Beam> table[] = {
+      {"nodes", "first node", "-", Allowed::node, "the case's nodes", &Beam::first, 0, 2},
+      {"nodes", "second node", "-", Allowed::node, "the case's nodes", &Beam::second, 1, 2},
+      {"axial_stiffness_N", "axial_stiffness", "N", Allowed::positive, "the case: E A",
+       &Beam::axial_stiffness},
+      {"torsional_stiffness_N_m2", "torsional_stiffness", "N m2", Allowed::positive,
+       "the case: G J", &Beam::torsional_stiffness},
+      {"bending_stiffness_N_m2", "bending_stiffness about y", "N m2", Allowed::positive,
+       "the case: E I_y", &Beam::bending_stiffness_y, 0, 2},
+      {"bending_stiffness_N_m2", "bending_stiffness about z", "N m2", Allowed::positive,
+       "the case: E I_z", &Beam::bending_stiffness_z, 1, 2},
+      {"shear_stiffness_N", "shear_stiffness along y", "N", Allowed::positive_or_infinite,
+       "the case: k G A", &Beam::shear_stiffness_y, 0, 2},
+      {"shear_stiffness_N", "shear_stiffness along z", "N", Allowed::positive_or_infinite,
+       "the case: k G A", &Beam::shear_stiffness_z, 1, 2},
+      {"stress_free_length_m", "stress_free_length", "m", Allowed::positive, "the case",
+       &Beam::stress_free_length},
+      {"thermal_expansion_per_K", "thermal_expansion", "1/K", Allowed::finite, "the case: α",
+       &Beam::thermal_expansion},
+      {"program", "program", "-", Allowed::program, "the case's programs", &Beam::program},
+      {"temperature_fraction", "temperature_fraction", "-", Allowed::finite, "the case",
+       &Beam::temperature_fraction},
+      {"gradient_program", "gradient_program", "-", Allowed::program, "the case's programs",
+       &Beam::gradient_program},
+      {"gradient_per_m", "gradient along y", "1/m", Allowed::finite, "the case", &Beam::gradient_y,
+       0, 2},
+      {"gradient_per_m", "gradient along z", "1/m", Allowed::finite, "the case", &Beam::gradient_z,
+       1, 2},
+      {"axis_y", "axis_y", "-", Allowed::direction, "the case", &Beam::axis_y},
+  };
+  return table;
+}
+
+std::span<const Output> Beam::outputs() {
+  // Of the ends in the axes x (along the beam), y and z of the deformed beam. Positive at the
+  // second end: tension, forces along y and z, moments about x, y and z that it exerts on the beam;
+  // at the first end all with the opposite sign, so that both are equal without bending.
+  static const Output table[] = {{"beam_force_first_N", 3},
+                                 {"beam_moment_first_N_m", 3},
+                                 {"beam_force_second_N", 3},
+                                 {"beam_moment_second_N_m", 3}};
+  return table;
+}
+
+void Beam::validate(const Model& model, std::span<const TemperatureRange> ranges) const {
+  detail::check_length(kind, name, model, first, second);
+  const TemperatureRange& range = ranges[index(program)];
+  const double per_kelvin = thermal_expansion * temperature_fraction;
+  const double strain = std::min(per_kelvin * range.lowest, per_kelvin * range.highest);
+  if (!(std::isfinite(strain) && strain > -1)) {
+    throw kernel::OutOfRange(named(*this), "thermal_expansion", thermal_expansion,
+                             "finite and such that a length is left [1/K]");
+  }
+  const Vector3d along =
+      (model.nodes[index(second)].position - model.nodes[index(first)].position).normalized();
+  const double skew = along.dot(axis_y);
+  if (!(std::abs(skew) < 1e-9)) {
+    throw kernel::OutOfRange(named(*this), "component of axis_y along the beam", skew, "0");
+  }
+}
+
+Beam::Frame Beam::frame(const Model& model) const {
+  const Node& one = model.nodes[index(first)];
+  const Node& other = model.nodes[index(second)];
+  Frame made{{first, second, rotation_of(model, first), rotation_of(model, second)},
+             {one.arm, other.arm},
+             {}};
+  made.beam.axial = axial_stiffness;
+  made.beam.torsional = torsional_stiffness;
+  made.beam.bending = {bending_stiffness_y, bending_stiffness_z};
+  // Bending about y shears along z.
+  made.beam.shear = {shear_stiffness_z, shear_stiffness_y};
+  const Vector3d along = (other.position - one.position).normalized();
+  const Vector3d axis_z = along.cross(axis_y).normalized();
+  made.beam.triad << along, axis_z.cross(along), axis_z;
+  return made;
+}
+
+ElementScale Beam::scale(const Frame& frame, const std::vector<Vector3d>& drawn) const {
+  const double l0 = stress_free_length;
+  const double axial = axial_stiffness / l0;
+  const double bending = 12.0 * std::max(bending_stiffness_y, bending_stiffness_z) / (l0 * l0 * l0);
+  const double length = (drawn[index(frame.nodes[1])] - drawn[index(frame.nodes[0])]).norm();
+  const double gradient = std::hypot(gradient_y, gradient_z) * l0;
+  const bool by_gradient = gradient > std::abs(temperature_fraction);
+  return {std::max(axial, bending), axial * std::abs(length - l0),
+          std::abs(thermal_expansion) * std::max(gradient, std::abs(temperature_fraction)),
+          by_gradient ? gradient_program : program};
+}
+
+void Beam::scale_misfit(const Model& model, double fraction) {
+  const double drawn = detail::drawn_length(model, first, second);
+  stress_free_length = drawn + fraction * (stress_free_length - drawn);
+}
+
+void Beam::evaluate(const Frame& frame, const ElementState& state, ElementWriter& writer) const {
+  const BeamStep step = step_at(*this, frame, state);
+  const Moved moved = moved_of(frame, state);
+  const std::array<kernel::Matrix3, 2> maps = spin_maps(frame, moved);
+  const Vector12 force = step.gradient();
+  write_forces(frame, maps, force, writer);
+  for (Eigen::Index end = 0; end < 2; ++end) {
+    writer.carries(force.segment<3>(6 * end).norm());
+    writer.carries(force.segment<3>(6 * end + 3).norm() / frame.arms[index(int(end))]);
+  }
+  if (writer.residual_only()) return;
+  // The Hessian of the energy in displacements and rotation vectors.
+  Matrix12 hessian = step.tangent();
+  for (int end = 0; end < 2; ++end) {
+    const int at = 6 * end + 3;
+    const std::size_t which = index(end);
+    hessian.middleCols<3>(at) = (hessian.middleCols<3>(at) * maps[which]).eval();
+    hessian.middleRows<3>(at) = (maps[which].transpose() * hessian.middleRows<3>(at)).eval();
+    hessian.block<3, 3>(at, at) +=
+        kernel::spin_map_derivative(moved.rotations[which], force.segment<3>(at)) /
+        (frame.arms[which] * frame.arms[which]);
+  }
+  hessian = (0.5 * (hessian + hessian.transpose())).eval();
+  constexpr std::array<int, 4> rows{{0, 6, 3, 9}};
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) {
+      writer.matrix(frame.nodes[a], frame.nodes[b], hessian.block<3, 3>(rows[a], rows[b]));
+    }
+  }
+}
+
+void Beam::thermal_rate(const Frame& frame, const ElementState& state,
+                        const std::vector<double>& program_rates, ElementWriter& writer) const {
+  const double growth =
+      stress_free_length * thermal_expansion * temperature_fraction * program_rates[index(program)];
+  std::array<double, 2> bend = curvature_per_kelvin(*this);
+  for (double& one : bend) one *= program_rates[index(gradient_program)];
+  if (growth == 0.0 && bend[0] == 0.0 && bend[1] == 0.0) return;
+  const BeamStep step = step_at(*this, frame, state);
+  const Vector12 rate = growth * step.gradient_by_length() +
+                        bend[0] * step.gradient_by_curvature(0) +
+                        bend[1] * step.gradient_by_curvature(1);
+  write_forces(frame, spin_maps(frame, moved_of(frame, state)), rate, writer);
+}
+
+double Beam::energy(const Frame& frame, const ElementState& state) const {
+  return step_at(*this, frame, state).energy();
+}
+
+void Beam::describe(const Frame& frame, const ElementState& state, double* outputs) const {
+  Eigen::Map<Vector12> found(outputs);
+  found = step_at(*this, frame, state).gradient_in_frame();
+  found.head<6>() *= -1.0;
+}
+
+void Beam::check_state(const Frame& frame, const ElementState& state) const {
+  const double largest = step_at(*this, frame, state).largest_local_rotation();
+  if (largest <= BeamStep::largest_rotation) return;
+  throw kernel::OutOfRange(named(*this), "rotation of an end relative to the beam", largest,
+                           "at most 1 rad; divide the beam into more beams");
+}
+
+double Beam::thermal_work(const Frame& frame, const detail::ThermalStep& step) const {
+  const double expansion = stress_free_length * thermal_expansion * temperature_fraction;
+  const std::array<double, 2> bend = curvature_per_kelvin(*this);
+  if (expansion == 0.0 && bend[0] == 0.0 && bend[1] == 0.0) return 0.0;
+  const detail::Way& way = step.way;
+  const auto ends = [&](const Eigen::VectorXd& z) {
+    return moved_of(frame, [&](int site) { return step.dofs.displacement(site, z); });
+  };
+  const Moved from = ends(way.from);
+  const Moved to = ends(way.to);
+  const bool straight = way.is_straight();
+  const Moved from_rate = straight ? Moved{} : ends(*way.from_rate);
+  const Moved to_rate = straight ? Moved{} : ends(*way.to_rate);
+  const auto between = [&](auto member, std::size_t end, double share) {
+    Vector3d made;
+    for (Eigen::Index x = 0; x < 3; ++x) {
+      const auto of = [&](const Moved& one) { return (one.*member)[end][x]; };
+      // A straight way is evaluated at its ends only.
+      made[x] = straight ? (share == 0.0 ? of(from) : of(to))
+                         : detail::Cubic{of(from), of(to), way.step() * of(from_rate),
+                                         way.step() * of(to_rate)}
+                               .at(share);
+    }
+    return made;
+  };
+  const detail::Quadrature& mean = step.quadratures[index(program)];
+  const detail::Quadrature& gradient = step.quadratures[index(gradient_program)];
+  const Vector3d drawn = step.drawn[index(second)] - step.drawn[index(first)];
+  double work = 0.0;
+  for (std::size_t k = 0; k < mean.count; ++k) {
+    const auto& point = mean.points[k];
+    const auto& across = gradient.points[k];
+    Moved moved;
+    for (std::size_t end = 0; end < 2; ++end) {
+      moved.places[end] = between(&Moved::places, end, point.share);
+      moved.rotations[end] = between(&Moved::rotations, end, point.share);
+    }
+    const BeamStep at =
+        step_at(*this, frame, drawn, moved, {point.temperature_change, across.temperature_change});
+    work += expansion * point.warmed * at.by_length();
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      work += bend[axis] * across.warmed * at.by_curvature(axis);
+    }
+  }
+  return work;
+}
+
+}  // namespace statejump::truss
