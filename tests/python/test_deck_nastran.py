@@ -202,6 +202,7 @@ BARS = {  # cards in place of CROD and PROD, and the displacement under 7000 N
     "offsets along it": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.25,.1,0.,.5,.1,0.\nPBAR,1,1,1.-4\n", 1.75e-3),
     "offsets that shorten it": ("CBAR,1,1,1,2,0.,1.,0.\n,,,.25,0.,0.\nPBAR,1,1,1.-4\n", 0.75e-3),
     "moments released": ("CBAR,1,1,1,2,0.,1.,0.\n,456,56\nPBAR,1,1,1.-4\n", 1e-3),
+    "shear forces released": ("CBAR,1,1,1,2,0.,1.,0.\n,2356,0\nPBAR,1,1,1.-4\n", 1e-3),
     "default property": ("BAROR,,7\nCBAR,1,,1,2,0.,1.,0.\nPBAR,7,1,1.-4\n", 1e-3),
 }
 
@@ -211,6 +212,33 @@ def test_bars_by_their_sections(name: str, tmp_path: Path) -> None:
     cards, wanted = BARS[name]
     bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", cards)
     assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(wanted, rel=1e-9)
+
+
+# A second bar in line whose axial force a pin flag releases. Its end is held along y and z.
+LOOSE = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-4\nGRID,3,,3.,0.,0.,,23\n")
+
+
+@pytest.mark.parametrize("flags", ["1", ",1", "456,15", "1,1"])
+def test_a_bar_without_axial_force_has_masses_only(flags: str, tmp_path: Path) -> None:
+    bulk = LOOSE + f"CBAR,2,1,2,3,0.,1.,0.\n,{flags}\nCROD,3,3,1,3\nPROD,3,1,1.-4\n"
+    document = made(tmp_path, bulk, beams_as_bars=True)
+    assert [link["name"] for link in document["link"]] == ["L1", "L3"]
+    assert [node.get("mass_kg") for node in document["node"]] == [None, pytest.approx(.27), pytest.approx(.27)]
+    assert moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_a_mass_without_a_bar_is_refused(tmp_path: Path) -> None:
+    bulk = LOOSE + "CBAR,2,1,2,3,0.,1.,0.\n,,1\n"
+    assert failure("deck_not_supported", card="CBAR", reason="no_bar_at_node") == refusal(tmp_path, bulk, beams_as_bars=True)
+    document = made(tmp_path, bulk + "SPC1,1,1,3\n", beams_as_bars=True)  # a held mass is a part of the ground
+    assert len(document["node"]) == 2 and moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("flags, force", [("1", 1600.0), (",1", 0.0), ("", 800.0)])
+def test_a_load_along_a_released_bar_acts_on_its_other_end(flags: str, force: float, tmp_path: Path) -> None:
+    bulk = LOOSE + f"CBAR,2,1,3,2,0.,1.,0.\n,{flags}\nCROD,3,3,1,3\nPROD,3,1,1.-4\nPLOAD1,5,2,FX,FR,0.,800.,1.,800.\n"
+    node = made(tmp_path, bulk, beams_as_bars=True)["node"][1]
+    assert node["force_N"][0] == pytest.approx(7000 + force, rel=1e-12)
 
 
 def test_a_bar_with_rigid_ends_expands_and_weighs_by_its_own_length(tmp_path: Path) -> None:
@@ -401,7 +429,8 @@ def test_several_unsupported_cards_are_named_at_once(tmp_path: Path) -> None:
 
 BENT = {
     "no option": ("CBAR,1,1,1,2,0.,1.,0.\n", {}, failure("deck_not_supported", card="CBAR", reason="bending", line=8)),
-    "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,1\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.PB", reason="pin_flags")),
+    "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,7\n", {"beams_as_bars": True}, failure("deck_bad_number", text="'7'", line=8)),
+    "load on a loose bar": ("CBAR,1,1,1,2,0.,1.,0.\n,1,1\nPLOAD1,5,1,FX,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="PLOAD1", reason="released_bar")),
     "offset": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.5,0.,0.,.5,.1,0.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="unequal_offsets")),
     "load across": ("CBAR,1,1,1,2,0.,1.,0.\nPLOAD1,5,1,FY,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="PLOAD1", reason="lateral_load")),
     "group of sections": ("CBAR,1,1,1,2,0.,1.,0.\nPBARL,1,1,MINE,ROD\n,1.\n", {"beams_as_bars": True}, failure("bar_without_property", kind="CBAR")),

@@ -34,6 +34,7 @@ class Bar:
     :param why_no_area: reason why the deck gives no area for the bar
     :param bends: whether it is a beam whose bending is omitted
     :param lengthened: ratio of its length to the distance of its nodes, to which rigid ends connect it
+    :param released: whether its first and its second end release the axial force
     """
 
     name: str
@@ -52,6 +53,7 @@ class Bar:
     why_no_area: str = ""
     bends: bool = False
     lengthened: float = 1.0
+    released: tuple[bool, bool] = (False, False)
 
 
 @dataclass

@@ -33,7 +33,8 @@ CARDS: dict[str, Card] = table(
     used("CROD", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CTUBE", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CONROD", "link", "EID G1 G2 MID A J C NSM", idle={"J C": TURNS}),
-    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar, pin flags of 4 to 6",
+    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar; masses of both ends, where a pin "
+           "flag releases the axial force",
            f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
            idle={f"X1 X2 X3{more}": BENDS}, bending=True)
       for name, more in (("CBAR", ""), ("CBEAM", " SA SB"))),
