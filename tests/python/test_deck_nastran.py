@@ -108,6 +108,69 @@ def test_replicated_cards_count_up(tmp_path: Path) -> None:
     assert [link["nodes"] for link in document["link"]] == [[f"N{n}", f"N{n + 1}"] for n in range(1, 5)]
 
 
+COSMIC = {  # a card of the rod, and the same card in the free fields of COSMIC's Nastran
+    "blanks": ("GRID,2,,1.,0.,0.", "GRID,2 ,, 1.  0.  0."),
+    "blanks around commas": ("SPC1,1,23,2", "SPC1 , 1  23 , 2"),
+    "a comma behind the name": ("CROD,1,1,1,2", "CROD, 1 1  1 2"),
+    "a numbered field": ("GRID,2,,1.,0.,0.", "GRID,2 4)1. 0. 0."),
+    "a number and its value": ("GRID,2,,1.,0.,0.", "GRID,2 4) 1. 0. 0."),
+    "a mark": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20. )+M1\n+M1, 1.+8 1.+8"),
+    "the mark of the line before": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20. 10)+M1\n), 1.+8 1.+8"),
+    "slashes": ("SPC1,1,123,1", "SPC1,1,123 1///"),
+    "a comma first": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.\n, 1.+8 1.+8"),
+    "a range": ("SPC1,1,23,2", "SPC1,1,23,2 THRU 5"),
+}
+
+
+@pytest.mark.parametrize("name", COSMIC)
+def test_blanks_separate_free_fields(name: str, tmp_path: Path) -> None:
+    old, new = COSMIC[name]
+    assert old in ROD
+    assert made(tmp_path, ROD.replace(old, new)) == made(tmp_path, ROD)
+
+
+@pytest.mark.parametrize("rule", ["=,*1,=,*1.,==\n=2\n", "=(3),*(1),=,*(1.),==\n", "=(3),%(5),=,%(4.),==\n",
+                                  "=(3),*(1) = *(1.) ==\n"])
+def test_steps_and_last_values_of_replicated_cards(rule: str, tmp_path: Path) -> None:
+    links = "CROD,1,1,1,2\n=(3),*1 = *1 / \n"
+    bulk = ROD.replace("GRID,2,,1.,0.,0.\n", "GRID,2,,1.,0.,0.\n" + rule).replace("CROD,1,1,1,2\n", links).replace(
+        "SPC1,1,23,2", "SPC1,1,23,2,THRU,5")
+    document = made(tmp_path, bulk)
+    assert [node["position_m"][0] for node in document["node"]] == [0, 1, 2, 3, 4]
+    assert [link["nodes"] for link in document["link"]] == [[f"N{n}", f"N{n + 1}"] for n in range(1, 5)]
+
+
+def test_continuations_repeat_with_counted_marks(tmp_path: Path) -> None:
+    bars = "CBAR,1,1,1,2,0. 1. 0. )+C-7\n=(2),*1 = *1 / ==\n+C-7,,,0. .1 0. 0. .1 0.\n=(2),==\nPBAR,1,1,1.-4\n"
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", bars).replace("GRID,2,,1.,0.,0.\n", "GRID,2,,1.,0.,0.\n=(2),*1,=,*1.,==\n")
+    (tmp_path / "deck.bdf").write_text(CONTROL + bulk + "SPC1,1,23,3,4\nENDDATA\n")
+    deck = read(tmp_path / "deck.bdf", options=Options(beams_as_bars=True))
+    assert len(deck.bars) == 3 and deck.left["CBAR", "equal offsets of both ends: nodes of a truss do not rotate"][1] == 3
+    assert failure("deck_bad_syntax", line=12) == refusal(tmp_path, bulk.replace("=(2),==", "=(3),=="), beams_as_bars=True)
+
+
+@pytest.mark.parametrize("card, wanted", [
+    ("GRID,9 8)1. 4)2.\n", failure("deck_bad_syntax", problem="'4)2.' is behind its field")),
+    ("GRID,9 11)1.\n", failure("deck_bad_syntax", problem="'11)1.' is behind its field")),
+    ("SPC,,1,123,0.\n", failure("deck_incomplete", card="SPC", needed="field 2")),
+    ("GRID,9,,A,0.,0.\n=,*1,,*1.,==\n", failure("deck_bad_syntax", problem="'*1.' and 'A' cannot be added")),
+])
+def test_free_fields_that_are_refused(card: str, wanted: Failure, tmp_path: Path) -> None:
+    assert wanted == refusal(tmp_path, ROD + card)
+
+
+def test_a_long_line_has_no_mark(tmp_path: Path) -> None:
+    # Field 10 of a longer line is data: the line ends with the shear factors K1 and K2.
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-4,1.-9,1.-9,2.-9,,,,,,,,,,,.5,.5\n")
+    assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_a_deck_of_springs_has_no_links(tmp_path: Path) -> None:
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CELAS2,1,7.+6,2,1\n")
+    document = made(tmp_path, bulk)
+    assert document.get("link", []) == [] and moved(document) == pytest.approx(1e-3, rel=1e-9)
+
+
 def test_included_files_are_read_with_their_lines(tmp_path: Path) -> None:
     (tmp_path / "mesh").mkdir()
     (tmp_path / "mesh" / "nodes.inc").write_text("GRID,1,,0.,0.,0.\nINCLUDE 'mesh/more.inc'\n")
@@ -127,6 +190,14 @@ def test_includes_that_are_refused(name: str, sentence: Failure, tmp_path: Path)
     (tmp_path / "link.inc").symlink_to("/etc/passwd")
     assert sentence == refusal(tmp_path, f"INCLUDE {name}\n" + ROD)
     assert failure("include_outside", included="'link.inc'") == refusal(tmp_path, "INCLUDE 'link.inc'\n" + ROD)
+
+
+def test_a_file_of_the_executive_control_is_refused_like_a_card(tmp_path: Path) -> None:
+    control = "SOL 101\nINCLUDE '/site/dmap/alters.v9'\n" + CONTROL.split("\n", 1)[1]
+    assert failure("deck_not_supported", card="INCLUDE", reason="executive_include", line=2) == refusal(tmp_path, ROD, control)
+    assert made(tmp_path, ROD, control, ignored=frozenset({"INCLUDE"})) == made(tmp_path, ROD)
+    (tmp_path / "alters.v9").write_text("COMPILE SEMG\n")
+    assert made(tmp_path, ROD, control.replace("/site/dmap/", "")) == made(tmp_path, ROD)
 
 
 SPRUNG = {  # cards besides the rod, and the resulting displacement of its end

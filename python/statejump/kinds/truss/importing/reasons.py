@@ -13,6 +13,7 @@ REASONS: dict[str, str] = {
     "coincident_nodes": "its nodes are at one position",
     "curvilinear_direction": "its direction is that of a curvilinear coordinate system",
     "distributed_load": "a load on elements that is not gravity",
+    "executive_include": "its file {included} is not beside the deck; the executive control may change the solution",
     "force_without_stiffness": "a force on node {node} in a direction in which no bar is stiff",
     "gravity_on_part": "it acts on a part of the structure only",
     "heat_transfer": "heat transfer: its supports are temperatures",

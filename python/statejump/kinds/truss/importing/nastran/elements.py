@@ -229,8 +229,8 @@ def finish_bars(reader: Reader) -> None:
 def _weigh_ends(reader: Reader, line: int, of: Bar) -> None:
     """Give half the mass of a bar without axial force to each end that is not held."""
     deck = reader.deck
-    length = np.linalg.norm(np.subtract(*(deck.nodes[end] for end in of.nodes))) * of.lengthened
-    mass = float(length) * (of.density or 0.0) * (of.area or 0.0)
+    between = np.subtract(deck.nodes[of.nodes[1]], deck.nodes[of.nodes[0]])
+    mass = float(np.linalg.norm(between)) * of.lengthened * (of.density or 0.0) * (of.area or 0.0)
     for node in of.nodes:
         if mass and not all(is_held(deck, node, axis) for axis in np.eye(3)):
             deck.weigh(node, mass / 2, line, of.kind)

@@ -33,8 +33,8 @@ CARDS: dict[str, Card] = table(
     used("CROD", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CTUBE", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CONROD", "link", "EID G1 G2 MID A J C NSM", idle={"J C": TURNS}),
-    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar; masses of both ends, where a pin "
-           "flag releases the axial force",
+    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar; masses of both ends, where a "
+           "pin flag releases the axial force",
            f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
            idle={f"X1 X2 X3{more}": BENDS}, bending=True)
       for name, more in (("CBAR", ""), ("CBEAM", " SA SB"))),
@@ -172,7 +172,7 @@ PARAMS: dict[str, Card] = table(
          "AUTOQSET RMXPANEL F56 RESLTOPT SOLADJC SDRPOPT SDRDENS SERST SECOMB SUBCASID MPCX EXTUNIT EXTDROUT OELMSET "
          "OGRDSET ISAVE NEWSET HDF5 CONM2 PEDGE MNLEMPRT FLUIDMP STRUCTMP FREQDEP OMACHPR GYROAVG WR3 WR4 ROTCSV "
          "ROTGPF ENFMETH ENFMOTN NQMAX CYCIO CYCSEQ OIBULK POSTEXT UNITSYS DBCDIAG DMIGNRG LSTRN COMPARE PNCHDB EPSHT "
-         "MAXIT SUPER TINY2 OMSGLVL BETAD EPSIO GRDEQ",
+         "MAXIT SUPER TINY2 OMSGLVL BETAD EPSIO GRDEQ SESDAMP",
          "output, damping, or how a program solves"),
     idle("ARP_TOL CBMIN3 CBMIN4 CBMIN4T CHKGRDS CRS_CCS CUSERIN DARPACK DELBAN EIGESTL EIGNORM2 ELFORCEN EPSERR EPSIL "
          "EQCHECK GRIDSEQ LANCMETH MXITERI PRTBASIC PRTCGLTM PRTCORD PRTCSTM PRTDLR PRTDOF PRTFOR PRTGMN PRTGOA "
