@@ -22,7 +22,10 @@ QUANTITIES = {"m": "length", "N": "force", "s": "time", "K": "temperature", "rad
               "Pa": "pressure", "m2": "area", "N/m": "stiffness", "kg/m3": "density", "kg": "mass"}
 _BRACKETS = (re.compile(r"(.*?)\s*\[([^\[\]]*)\]"), re.compile(r"(.*?)\s*\(([^()]*)\)"))
 _SLASH = re.compile(r"(.*?)\s*/\s*(.+)")
+# In brackets these are temperatures. Behind a blank they are names: "Sensor C".
+IN_BRACKETS = {"C": "°C", "F": "°F"}
 NO_UNIT = ("", "-", "1")
+TIMES = ("t", "timestamp", "time stamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # names of a time column
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,8 @@ def splits(name: str) -> Iterator[tuple[str, str]]:
     """Return all possible divisions of a column name into name and unit."""
     for pattern in (*_BRACKETS, _SLASH):
         if bracket := pattern.fullmatch(name.strip()):
-            yield bracket[1], bracket[2].strip()
+            unit = bracket[2].strip()
+            yield bracket[1], IN_BRACKETS.get(unit, unit)
     for found in re.finditer(r"_|\s+|,\s*", name):
         if name[:found.start()].strip() and name[found.end():].strip():
             yield name[:found.start()], name[found.end():].strip()
