@@ -66,11 +66,11 @@ def matched(header: Sequence[str], known: Sequence[str], words: Mapping[str, Seq
 
 
 def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column:
-    for base, unit in splits(name):
-        key = bases.get(_plain(base))
-        if key is not None:
-            return Column(name, key, _converted(name, base, unit, key))
-    key = bases.get(_plain(name))
+    key = bases.get(_plain(name))  # first, because a name may have several words: "Time stamp"
+    for base, unit in splits(name) if key is None else ():
+        of = bases.get(_plain(base))
+        if of is not None:
+            return Column(name, of, _converted(name, base, unit, of))
     if key is None:
         near = get_close_matches(name, known, 1)
         raise UnknownKey(name, section=f"column {name!r}", **(
