@@ -120,8 +120,10 @@ def test_a_table_without_a_header_has_names_of_the_user(tmp_path: Path, statejum
     assert statejump("identify", "loop.out", "--model", "coulomb", "--columns", "disp [mm], force_N").status == 0
     short = statejump("identify", "loop.out", "--columns", "disp [mm],force_N,time_s")
     assert short.failure == failure("row_of_other_length", cells=2, width=3, line=1)
-    (tmp_path / "named.out").write_text("disp_mm force_N\n" + "\n".join(rows) + "\n")
-    assert statejump("identify", "named.out", "--columns", "disp_mm,force_N").failure == failure("table_with_header", line=1)
+    (tmp_path / "named.out").write_text("\"Actuator Displacment\" \"Actuator Force\"\nmm N\n" + "\n".join(rows) + "\n")
+    assert "--columns gives other names" in statejump("identify", "named.out").errors
+    named = sj.identify(tmp_path / "named.out", model="coulomb", columns=["disp [mm]", "force_N"])
+    assert named.values == found.values
 
 
 def test_a_slide_may_slip_before_its_play_is_used_up() -> None:

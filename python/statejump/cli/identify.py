@@ -37,7 +37,7 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
               help="Radius of the journal [m], of a moment of friction likewise.")
 @click.option("--ignore", "ignored", multiple=True, metavar="COLUMN", help="Leave out a column of the table.")
 @click.option("--columns", default=None, metavar="NAMES",
-              help="Names of the columns of a table without a header, with commas between them: displacement_mm,force_kN.")
+              help="Names of the columns, for a table without a header or in place of its own: displacement_mm,force_kN.")
 @RESULTS
 @QUIET
 def identify_command(
@@ -63,7 +63,7 @@ def identify_command(
             if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
                 refused.key = OPTIONS[refused.key]
             if isinstance(refused, UnknownKey) and not refused.remedy:
-                refused.remedy = f"--ignore {quote(str(refused.key))} leaves it out"
+                refused.remedy = f"--ignore {quote(str(refused.key))} leaves it out, --columns gives other names"
             if refused.code in ("column_of_other_unit", "column_without_unit", "columns_of_one_key"):
                 said = f"--ignore {quote(str(refused.details['column']))} leaves it out"
                 refused.remedy = f"{refused.remedy}; {said}" if refused.remedy else said

@@ -181,10 +181,6 @@ CODES: dict[str, Code] = {
     "members_not_utf8": Code(what="members has texts that are not UTF-8"),
     "misspelt_column": Code(what="has no column {column}_K or {column}_degC", remedy="did you mean {meant!r}?"),
     "name_with_blank": Code(cause="names in a list of a table must have no blanks"),
-    "table_with_header": Code(
-        what="line {line} names columns",
-        cause="names are given for a table without a header",
-    ),
     "table_without_header": Code(
         what="line {line} names no columns",
         cause="it holds numbers only",

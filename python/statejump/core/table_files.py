@@ -60,7 +60,7 @@ class Table:
     :param path: file of the table
     :param separator: separator of the cells
     :param header: names of the columns
-    :param names: names of the columns of a table that has no header; empty: the first row is the header
+    :param names: names of the columns, for a table without a header or in place of its own; empty: the header's
     """
 
     def __init__(self, path: Path, stream: TextIO, names: Sequence[str] = ()) -> None:
@@ -80,15 +80,14 @@ class Table:
         if self._counts:
             del cells[0]
         is_header = not all(finite_number(cell.replace(",", ".")) is not None for cell in cells)
-        if names and is_header:
-            raise Unreadable(code="table_with_header", file=path, line=self.line)
         if not names and not is_header:
             raise Unreadable(code="table_without_header", file=path, line=self.line)
         for place, cell in enumerate(cells, start=1):
             if not cell:
                 raise Unreadable(code="column_without_name", file=path, line=self.line, column=place + self._counts)
-        self._first = [cells] if names else list(self._taken())
-        self.header = tuple(names or self._with_units(cells))
+        self._first = list(self._taken()) if is_header else [cells]
+        own = self._with_units(cells) if is_header else names
+        self.header = tuple(names or own)
         # Whether a comma is known to be a decimal mark: German Excel uses semicolons for this reason.
         self._decided = self.separator == ";"
         self._comma: tuple[int, str, str] | None = None
@@ -375,7 +374,7 @@ def open_table(path: Path, largest_bytes: int | None = None, beside: str = "", n
     """Open a text table for reading.
 
     :param largest_bytes: largest allowed size; ``beside`` is a hint for the error
-    :param names: names of the columns of a table that has no header
+    :param names: names of the columns, for a table without a header or in place of its own
     :raises Unreadable: the file may not be read, is not a text table, or has ambiguous commas
     """
     try:
@@ -431,7 +430,7 @@ def read_known(
     :param words: other names of the quantity of a key, by key
     :param texts: keys whose cells are texts
     :param ignored: names of columns to omit
-    :param names: names of the columns of a table that has no header
+    :param names: names of the columns, for a table without a header or in place of its own
     :raises StatejumpError: one sentence with the file, and line or column
     """
     with open_table(path, names=names) as table:

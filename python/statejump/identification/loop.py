@@ -109,7 +109,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
     :param source: table or columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``;
         ``time_s`` is ignored
     :param ignored: names of columns to omit from a table
-    :param columns: names of the columns of a table that has no header
+    :param columns: names of the columns, for a table without a header or in place of its own
     :raises StatejumpError: the file does not exist, a column is missing or unknown, a value is not finite, or the path
         is constant or has too few rows
     """

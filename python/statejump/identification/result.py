@@ -268,7 +268,7 @@ def identify(
     :param normal_force_N: normal force in the test [N]; it converts the friction force to a friction coefficient
     :param journal_radius_m: radius of the journal [m]; it converts the friction moment to a friction coefficient
     :param ignored: names of columns to omit from a table
-    :param columns: names of the columns of a table that has no header
+    :param columns: names of the columns, for a table without a header or in place of its own
     :raises StatejumpError: the file is not a loop, or the joint is unknown
     """
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
