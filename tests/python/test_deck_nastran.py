@@ -285,6 +285,19 @@ def test_bars_by_their_sections(name: str, tmp_path: Path) -> None:
     assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(wanted, rel=1e-9)
 
 
+@pytest.mark.parametrize("element", ["CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CONROD,1,1,2,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-4\n"])
+def test_a_bar_that_is_too_long_pushes(element: str, tmp_path: Path) -> None:
+    """A rod that is 2 mm too long pushes a spring as stiff as itself by 1 mm."""
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", element).replace("FORCE,5,2,,7000.,1.,0.,0.", "DEFORM,5,1,.0015\nDEFORM,5,,,1,5.-4")
+    document = made(tmp_path, bulk + "CELAS2,9,7.+6,2,1\n", CONTROL.replace("LOAD", "DEFORM"), beams_as_bars=True)
+    assert document["link"][0]["stress_free_length_m"] == 1.002
+    assert moved(document) == pytest.approx(1e-3, rel=2e-3)  # of the longer rod
+    assert failure("deck_undefined", card="DEFORM", name="8", line=13 + element.count("\n")) == refusal(
+        tmp_path, bulk + "DEFORM,5,8,.1\n", CONTROL.replace("LOAD", "DEFORM"), beams_as_bars=True)
+    document = made(tmp_path, bulk, beams_as_bars=True)  # the set is not selected
+    assert "stress_free_length_m" not in document["link"][0]
+
+
 # A second bar in line whose axial force a pin flag releases. Its end is held along y and z.
 LOOSE = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-4\nGRID,3,,3.,0.,0.,,23\n")
 

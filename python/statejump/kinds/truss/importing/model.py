@@ -35,6 +35,7 @@ class Bar:
     :param why_no_modulus: reason why the deck gives no Young's modulus for the bar
     :param bends: whether it is a beam whose bending is omitted
     :param lengthened: ratio of its length to the distance of its nodes, to which rigid ends connect it
+    :param elongation: stress-free length minus the distance of its nodes, without rigid ends
     :param released: whether its first and its second end release the axial force
     """
 
@@ -55,6 +56,7 @@ class Bar:
     why_no_modulus: str = ""
     bends: bool = False
     lengthened: float = 1.0
+    elongation: float = 0.0
     released: tuple[bool, bool] = (False, False)
 
 

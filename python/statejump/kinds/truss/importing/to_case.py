@@ -302,6 +302,9 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
         if key in made:
             made[key] *= bar.lengthened
     made["young_modulus_Pa"] /= bar.lengthened
+    if bar.elongation:
+        distance = np.linalg.norm(np.subtract(deck.nodes[bar.nodes[1]], deck.nodes[bar.nodes[0]]))
+        made["stress_free_length_m"] = in_units(float(distance) + bar.elongation, units.length_m)
     if bar.poisson_ratio is not None:
         made["poisson_ratio"] = bar.poisson_ratio
     if peak and change != peak:

@@ -90,6 +90,18 @@ def conrod(reader: Reader, card: Card) -> None:
     reader.conrods[name] = (card.line, made, reader.whole(card, 3))
 
 
+def deform(reader: Reader, card: Card) -> None:
+    """Read the elongations of bars without stress (DEFORM)."""
+    for place in (1, 3, 5):
+        if card[place]:
+            name = reader.whole(card, place)
+            found = reader.bars.get(name) or reader.conrods.get(name)
+            if found is None:
+                raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
+            found[1].elongation += reader.number(card, place + 1)
+            reader.deck.take(card.name, "stress-free length of a link")
+
+
 def celas(reader: Reader, card: Card) -> None:
     """Read a spring between components of two nodes (CELAS1, CELAS2). An empty component means the ground."""
     name = element(reader, card)
