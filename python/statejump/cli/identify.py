@@ -37,7 +37,7 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
               help="Radius of the journal [m], of a moment of friction likewise.")
 @click.option("--ignore", "ignored", multiple=True, metavar="COLUMN", help="Leave out a column of the table.")
 @click.option("--columns", default=None, metavar="NAMES",
-              help="Names of the columns, for a table without a header or in place of its own: displacement_mm,force_kN.")
+              help="Names of the columns, for a table without a header or in place of its own: disp_mm,force_kN.")
 @RESULTS
 @QUIET
 def identify_command(

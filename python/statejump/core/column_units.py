@@ -25,7 +25,8 @@ _SLASH = re.compile(r"(.*?)\s*/\s*(.+)")
 # In brackets these are temperatures. Behind a blank they are names: "Sensor C".
 IN_BRACKETS = {"C": "°C", "F": "°F"}
 NO_UNIT = ("", "-", "1")
-TIMES = ("t", "timestamp", "time stamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # names of a time column
+# Names of a column of times.
+TIMES = ("t", "timestamp", "time stamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,8 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> str:
     if note["kind"] == "snap":
         return (f"{_named(note['joints'])}: slip runs away within the play {at}; dashpots in the joints carry the "
                 f"structure on to a stable position, {note['value']:.3g} m away")
-    return (f"{_named(note['joints'])}: constrain a displacement more than once {at}; the reactions are one solution "
+    verb = "constrains" if len(note["joints"]) == 1 else "constrain"
+    return (f"{_named(note['joints'])}: {verb} a displacement more than once {at}; the reactions are one solution "
             "of many, the displacements are unique")
 
 
