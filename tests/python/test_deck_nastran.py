@@ -116,6 +116,7 @@ COSMIC = {  # a card of the rod, and the same card in the free fields of COSMIC'
     "a number and its value": ("GRID,2,,1.,0.,0.", "GRID,2 4) 1. 0. 0."),
     "a mark": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20. )+M1\n+M1, 1.+8 1.+8"),
     "the mark of the line before": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20. 10)+M1\n), 1.+8 1.+8"),
+    "a mark with a blank": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,+ A\n+ A,1.+8 1.+8"),
     "slashes": ("SPC1,1,123,1", "SPC1,1,123 1///"),
     "a comma first": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.\n, 1.+8 1.+8"),
     "a range": ("SPC1,1,23,2", "SPC1,1,23,2 THRU 5"),

@@ -22,6 +22,7 @@ STEP, LAST = re.compile(r"\*(?:\((\S+)\)|([^()]+))$"), re.compile(r"%\((\S+)\)$"
 COUNTED = re.compile(r"(.*-)(\d+)$")  # continuation mark that counts up in replicated lines
 # A comma, blanks or both separate free fields. COSMIC's Nastran places a value by its field number: 8)246, )+M1.
 SEPARATOR = re.compile(r"\s*,\s*|\s+")
+SPACED_MARK = re.compile(r"(^|,)\s*([+*])\s+(?=\w)")  # MSC's decks write a mark as "+ A"
 PLACED = re.compile(r"(\d{0,2})\)(.*)$")
 MARK_FIELD = 10
 # A number without the letter of its exponent, for example 7.+10 or 2.3-5.
@@ -285,7 +286,7 @@ def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
 
 def _words(deck: Deck, number: int, line: str) -> list[str]:
     """Return the free fields of a line; the first is empty in a continuation without a mark."""
-    text = line.strip()
+    text = SPACED_MARK.sub(r"\1\2", line.strip())
     if line[0] in " ,":  # the first separator follows the empty field
         text = text[1:].lstrip() if text.startswith(",") else text
         given = ["", *SEPARATOR.split(text)]
