@@ -67,8 +67,7 @@ class BodySums {
     // The step divides the axial stiffness by the present stress-free length l_T, and pin damping
     // by the present length. The reference length bounds both in later states without cooling.
     const Real change = link.program ? link.program->temperature_change(scene_.time) : 0;
-    const Real length =
-        std::min(link.stressFreeLength, stepper::stress_free_length(link, change));
+    const Real length = std::min(link.stressFreeLength, stepper::stress_free_length(link, change));
     const Real across = std::min(length, (two.se3.position - one.se3.position).norm());
     const Real k = link.youngModulus * link.crossSectionArea / length;
     const Real c =
