@@ -61,12 +61,17 @@ class BodySums {
   }
 
   void add(const ThermalLink& link) {
-    const Real root = inverse_mass(state_of(link.id1, "ThermalLink.id1"));
-    const Real tip = inverse_mass(state_of(link.id2, "ThermalLink.id2"));
-    const Real length = link.stressFreeLength;
+    const yade::State& one = state_of(link.id1, "ThermalLink.id1");
+    const yade::State& two = state_of(link.id2, "ThermalLink.id2");
+    const Real root = inverse_mass(one), tip = inverse_mass(two);
+    // The step divides the axial stiffness by the present stress-free length l_T, and pin damping
+    // by the present length. The reference length bounds both in later states without cooling.
+    const Real change = link.program ? link.program->temperature_change(scene_.time) : 0;
+    const Real length = std::min(link.stressFreeLength, stepper::stress_free_length(link, change));
+    const Real across = std::min(length, (two.se3.position - one.se3.position).norm());
     const Real k = link.youngModulus * link.crossSectionArea / length;
     const Real c =
-        stepper::damping_coefficient(link, root + tip) + link.pinDamping / (length * length);
+        stepper::damping_coefficient(link, root + tip) + link.pinDamping / (across * across);
     add(link.id1, root, k, c);
     add(link.id2, tip, k, c);
   }

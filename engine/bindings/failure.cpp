@@ -69,7 +69,8 @@ void raise(const Failure& failure) {
   if (const std::string why = cause(fields); !why.empty()) attributes["cause"] = why;
   if (const std::string cure = remedy(fields); !cure.empty()) attributes["remedy"] = cure;
   py::dict numbers;
-  if (fields.mode_count > 0) numbers["modes"] = fields.mode_count;
+  const auto modes = std::max(static_cast<std::size_t>(fields.mode_count), fields.modes.size());
+  if (modes > 0) numbers["modes"] = modes;
   for (const auto& [name, value] : fields.numbers) numbers[py::str(name)] = value;
   attributes["numbers"] = numbers;
   raise(to_string(fields.kind), failure.what(), attributes);

@@ -57,6 +57,17 @@ def refusal(folder: Path, text: str, **options: Any) -> sj.StatejumpError:
     return refused.value
 
 
+def test_springs_need_no_links(tmp_path: Path) -> None:
+    text = MODEL[:MODEL.index("*ELEMENT")] + "*ELEMENT, TYPE=SPRINGA, ELSET=S\n1, 1, 2\n*SPRING, ELSET=S\n\n7.e6\n"
+    document = made(tmp_path, text + MODEL[MODEL.index("*BOUNDARY"):] + LOAD)
+    assert "link" not in document and moved(document) == pytest.approx(1e-3, rel=1e-9)
+
+
+def test_a_bar_without_a_section_says_so(tmp_path: Path) -> None:
+    text = MODEL[:MODEL.index("*SOLID")] + MODEL[MODEL.index("*BOUNDARY"):] + LOAD
+    assert refusal(tmp_path, text) == failure("bar_without_property", cause="no section names it", property="Young's modulus")
+
+
 NODES = MODEL[:MODEL.index("*ELEMENT")]
 SAME = {  # replacements in the deck that do not change its meaning
     "elements before nodes": (MODEL, MODEL.replace(NODES, "") + NODES),
@@ -67,6 +78,7 @@ SAME = {  # replacements in the deck that do not change its meaning
     "parameters over lines": ("*SOLID SECTION, ELSET=BARS,", "*SOLID SECTION,\nELSET=BARS,"),
     "exponents of Fortran": ("7.e10", "7.d10"),
     "named supports": ("1, 1, 3", "1, PINNED"),
+    "an initial motion": ("*BOUNDARY", "*INITIAL CONDITIONS, TYPE=VELOCITY\n2, 1, 3.\n*BOUNDARY"),
     "an initial temperature that stays": ("*BOUNDARY", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 20.\n*BOUNDARY"),
     "the same coefficient twice": ("2.3e-5\n", "2.3e-5, 0.\n2.3e-5, 100.\n"),
     "a coefficient of three equal directions": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO, ZERO=20.\n2.3e-5, 2.3e-5, 2.3e-5"),

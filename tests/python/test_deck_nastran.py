@@ -108,6 +108,72 @@ def test_replicated_cards_count_up(tmp_path: Path) -> None:
     assert [link["nodes"] for link in document["link"]] == [[f"N{n}", f"N{n + 1}"] for n in range(1, 5)]
 
 
+COSMIC = {  # a card of the rod, and the same card in the free fields of COSMIC's Nastran
+    "blanks": ("GRID,2,,1.,0.,0.", "GRID,2 ,, 1.  0.  0."),
+    "blanks around commas": ("SPC1,1,23,2", "SPC1 , 1  23 , 2"),
+    "a comma behind the name": ("CROD,1,1,1,2", "CROD, 1 1  1 2"),
+    "a numbered field": ("GRID,2,,1.,0.,0.", "GRID,2 4)1. 0. 0."),
+    "a number and its value": ("GRID,2,,1.,0.,0.", "GRID,2 4) 1. 0. 0."),
+    "a mark": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20. )+M1\n+M1, 1.+8 1.+8"),
+    "the mark of the line before": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20. 10)+M1\n), 1.+8 1.+8"),
+    "a mark with a blank": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,+ A\n+ A,1.+8 1.+8"),
+    "slashes": ("SPC1,1,123,1", "SPC1,1,123 1///"),
+    "a comma first": ("MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.\n, 1.+8 1.+8"),
+    "a range": ("SPC1,1,23,2", "SPC1,1,23,2 THRU 5"),
+}
+
+
+@pytest.mark.parametrize("name", COSMIC)
+def test_blanks_separate_free_fields(name: str, tmp_path: Path) -> None:
+    old, new = COSMIC[name]
+    assert old in ROD
+    assert made(tmp_path, ROD.replace(old, new)) == made(tmp_path, ROD)
+
+
+@pytest.mark.parametrize("rule", ["=,*1,=,*1.,==\n=2\n", "=(3),*(1),=,*(1.),==\n", "=(3),%(5),=,%(4.),==\n",
+                                  "=(3),*(1) = *(1.) ==\n"])
+def test_steps_and_last_values_of_replicated_cards(rule: str, tmp_path: Path) -> None:
+    links = "CROD,1,1,1,2\n=(3),*1 = *1 / \n"
+    bulk = ROD.replace("GRID,2,,1.,0.,0.\n", "GRID,2,,1.,0.,0.\n" + rule).replace("CROD,1,1,1,2\n", links).replace(
+        "SPC1,1,23,2", "SPC1,1,23,2,THRU,5")
+    document = made(tmp_path, bulk)
+    assert [node["position_m"][0] for node in document["node"]] == [0, 1, 2, 3, 4]
+    assert [link["nodes"] for link in document["link"]] == [[f"N{n}", f"N{n + 1}"] for n in range(1, 5)]
+
+
+@pytest.mark.parametrize("rest", ["=(2),==", "+C-8,,,0. .1 0. 0. .1 0.\n=(1),==", "+C-9,,,0. .1 0. 0. .1 0.\n+C-8,,,0. .1 0. 0. .1 0."])
+def test_continuations_repeat_with_counted_marks(rest: str, tmp_path: Path) -> None:
+    bars = f"CBAR,1,1,1,2,0. 1. 0. )+C-7\n=(2),*1 = *1 / ==\n+C-7,,,0. .1 0. 0. .1 0.\n{rest}\nPBAR,1,1,1.-4\n"
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", bars).replace("GRID,2,,1.,0.,0.\n", "GRID,2,,1.,0.,0.\n=(2),*1,=,*1.,==\n")
+    (tmp_path / "deck.bdf").write_text(CONTROL + bulk + "SPC1,1,23,3,4\nENDDATA\n")
+    deck = read(tmp_path / "deck.bdf", options=Options(beams_as_bars=True))
+    assert len(deck.bars) == 3 and deck.left["CBAR", "equal offsets of both ends: nodes of a truss do not rotate"][1] == 3
+    if rest == "=(2),==":
+        assert failure("deck_bad_syntax", line=12) == refusal(tmp_path, bulk.replace(rest, "=(3),=="), beams_as_bars=True)
+
+
+@pytest.mark.parametrize("card, wanted", [
+    ("GRID,9 8)1. 4)2.\n", failure("deck_bad_syntax", problem="'4)2.' is behind its field")),
+    ("GRID,9 11)1.\n", failure("deck_bad_syntax", problem="'11)1.' is behind its field")),
+    ("SPC,,1,123,0.\n", failure("deck_incomplete", card="SPC", needed="field 2")),
+    ("GRID,9,,A,0.,0.\n=,*1,,*1.,==\n", failure("deck_bad_syntax", problem="'*1.' and 'A' cannot be added")),
+])
+def test_free_fields_that_are_refused(card: str, wanted: Failure, tmp_path: Path) -> None:
+    assert wanted == refusal(tmp_path, ROD + card)
+
+
+def test_a_long_line_has_no_mark(tmp_path: Path) -> None:
+    # Field 10 of a longer line is data: the line ends with the shear factors K1 and K2.
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-4,1.-9,1.-9,2.-9,,,,,,,,,,,.5,.5\n")
+    assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_a_deck_of_springs_has_no_links(tmp_path: Path) -> None:
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CELAS2,1,7.+6,2,1\n")
+    document = made(tmp_path, bulk)
+    assert document.get("link", []) == [] and moved(document) == pytest.approx(1e-3, rel=1e-9)
+
+
 def test_included_files_are_read_with_their_lines(tmp_path: Path) -> None:
     (tmp_path / "mesh").mkdir()
     (tmp_path / "mesh" / "nodes.inc").write_text("GRID,1,,0.,0.,0.\nINCLUDE 'mesh/more.inc'\n")
@@ -127,6 +193,14 @@ def test_includes_that_are_refused(name: str, sentence: Failure, tmp_path: Path)
     (tmp_path / "link.inc").symlink_to("/etc/passwd")
     assert sentence == refusal(tmp_path, f"INCLUDE {name}\n" + ROD)
     assert failure("include_outside", included="'link.inc'") == refusal(tmp_path, "INCLUDE 'link.inc'\n" + ROD)
+
+
+def test_a_file_of_the_executive_control_is_refused_like_a_card(tmp_path: Path) -> None:
+    control = "SOL 101\nINCLUDE '/site/dmap/alters.v9'\n" + CONTROL.split("\n", 1)[1]
+    assert failure("deck_not_supported", card="INCLUDE", reason="executive_include", line=2) == refusal(tmp_path, ROD, control)
+    assert made(tmp_path, ROD, control, ignored=frozenset({"INCLUDE"})) == made(tmp_path, ROD)
+    (tmp_path / "alters.v9").write_text("COMPILE SEMG\n")
+    assert made(tmp_path, ROD, control.replace("/site/dmap/", "")) == made(tmp_path, ROD)
 
 
 SPRUNG = {  # cards besides the rod, and the resulting displacement of its end
@@ -202,6 +276,7 @@ BARS = {  # cards in place of CROD and PROD, and the displacement under 7000 N
     "offsets along it": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.25,.1,0.,.5,.1,0.\nPBAR,1,1,1.-4\n", 1.75e-3),
     "offsets that shorten it": ("CBAR,1,1,1,2,0.,1.,0.\n,,,.25,0.,0.\nPBAR,1,1,1.-4\n", 0.75e-3),
     "moments released": ("CBAR,1,1,1,2,0.,1.,0.\n,456,56\nPBAR,1,1,1.-4\n", 1e-3),
+    "shear forces released": ("CBAR,1,1,1,2,0.,1.,0.\n,2356,0\nPBAR,1,1,1.-4\n", 1e-3),
     "default property": ("BAROR,,7\nCBAR,1,,1,2,0.,1.,0.\nPBAR,7,1,1.-4\n", 1e-3),
 }
 
@@ -211,6 +286,46 @@ def test_bars_by_their_sections(name: str, tmp_path: Path) -> None:
     cards, wanted = BARS[name]
     bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", cards)
     assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("element", ["CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CONROD,1,1,2,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-4\n"])
+def test_a_bar_that_is_too_long_pushes(element: str, tmp_path: Path) -> None:
+    """A rod that is 2 mm too long pushes a spring as stiff as itself by 1 mm."""
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", element).replace("FORCE,5,2,,7000.,1.,0.,0.", "DEFORM,5,1,.0015\nDEFORM,5,,,1,5.-4")
+    document = made(tmp_path, bulk + "CELAS2,9,7.+6,2,1\n", CONTROL.replace("LOAD", "DEFORM"), beams_as_bars=True)
+    assert document["link"][0]["stress_free_length_m"] == 1.002
+    assert moved(document) == pytest.approx(1e-3, rel=2e-3)  # of the longer rod
+    assert failure("deck_undefined", card="DEFORM", name="8", line=13 + element.count("\n")) == refusal(
+        tmp_path, bulk + "DEFORM,5,8,.1\n", CONTROL.replace("LOAD", "DEFORM"), beams_as_bars=True)
+    document = made(tmp_path, bulk, CONTROL.replace("LOAD = 5\n", ""), beams_as_bars=True)  # the set is not selected
+    assert "stress_free_length_m" not in document["link"][0]
+
+
+# A second bar in line whose axial force a pin flag releases. Its end is held along y and z.
+LOOSE = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.-4\nGRID,3,,3.,0.,0.,,23\n")
+
+
+@pytest.mark.parametrize("flags", ["1", ",1", "456,15", "1,1"])
+def test_a_bar_without_axial_force_has_masses_only(flags: str, tmp_path: Path) -> None:
+    bulk = LOOSE + f"CBAR,2,1,2,3,0.,1.,0.\n,{flags}\nCROD,3,3,1,3\nPROD,3,1,1.-4\n"
+    document = made(tmp_path, bulk, beams_as_bars=True)
+    assert [link["name"] for link in document["link"]] == ["L1", "L3"]
+    assert [node.get("mass_kg") for node in document["node"]] == [None, pytest.approx(.27), pytest.approx(.27)]
+    assert moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_a_mass_without_a_bar_is_refused(tmp_path: Path) -> None:
+    bulk = LOOSE + "CBAR,2,1,2,3,0.,1.,0.\n,,1\n"
+    assert failure("deck_not_supported", card="CBAR", reason="no_bar_at_node") == refusal(tmp_path, bulk, beams_as_bars=True)
+    document = made(tmp_path, bulk + "SPC1,1,1,3\n", beams_as_bars=True)  # a held mass is a part of the ground
+    assert len(document["node"]) == 2 and moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("flags, force", [("1", 1600.0), (",1", 0.0), ("", 800.0)])
+def test_a_load_along_a_released_bar_acts_on_its_other_end(flags: str, force: float, tmp_path: Path) -> None:
+    bulk = LOOSE + f"CBAR,2,1,3,2,0.,1.,0.\n,{flags}\nCROD,3,3,1,3\nPROD,3,1,1.-4\nPLOAD1,5,2,FX,FR,0.,800.,1.,800.\n"
+    node = made(tmp_path, bulk, beams_as_bars=True)["node"][1]
+    assert node["force_N"][0] == pytest.approx(7000 + force, rel=1e-12)
 
 
 def test_a_bar_with_rigid_ends_expands_and_weighs_by_its_own_length(tmp_path: Path) -> None:
@@ -401,7 +516,8 @@ def test_several_unsupported_cards_are_named_at_once(tmp_path: Path) -> None:
 
 BENT = {
     "no option": ("CBAR,1,1,1,2,0.,1.,0.\n", {}, failure("deck_not_supported", card="CBAR", reason="bending", line=8)),
-    "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,1\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.PB", reason="pin_flags")),
+    "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,7\n", {"beams_as_bars": True}, failure("deck_bad_number", text="'7'", line=8)),
+    "load on a loose bar": ("CBAR,1,1,1,2,0.,1.,0.\n,1,1\nPLOAD1,5,1,FX,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="PLOAD1", reason="released_bar")),
     "offset": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.5,0.,0.,.5,.1,0.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="unequal_offsets")),
     "load across": ("CBAR,1,1,1,2,0.,1.,0.\nPLOAD1,5,1,FY,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="PLOAD1", reason="lateral_load")),
     "group of sections": ("CBAR,1,1,1,2,0.,1.,0.\nPBARL,1,1,MINE,ROD\n,1.\n", {"beams_as_bars": True}, failure("bar_without_property", kind="CBAR")),

@@ -94,6 +94,38 @@ def test_columns_of_other_sensors_are_left_out_by_name(tmp_path: Path, statejump
     assert "--ignore = 'Strain 2'" in statejump("identify", "rig.csv", "--ignore", "Strain 2").errors
 
 
+def test_a_table_of_a_data_logger_is_read(tmp_path: Path, statejump: Callable[..., Any]) -> None:
+    """Loggers write times in a column 'Timestamp', and the voltages of sensors beside forces and displacements."""
+    loop = measured("coulomb", JOINT)
+    times = [f"2025-11-14 19:48:{second // 10:02d}.{second % 10}00000" for second in range(len(loop["force_N"]))]
+    rows = ["Timestamp,Force (V),Force (N),Displacement (mm)"] + [
+        f"{time},{force / 200!r},{force!r},{1e3 * place!r}"
+        for time, force, place in zip(times, loop["force_N"].tolist(), loop["displacement_m"].tolist())]
+    (tmp_path / "logger.csv").write_text("\n".join(rows[:600]) + "\n")
+    refused = statejump("identify", "logger.csv", "--model", "coulomb")
+    assert refused.failure == failure("column_of_other_unit", column="Force (V)", unit="V")
+    assert "--ignore 'Force (V)' leaves it out" in refused.errors
+    taken = statejump("identify", "logger.csv", "--model", "coulomb", "--ignore", "Force (V)")
+    assert taken.status == 0, taken.errors
+
+
+def test_a_table_without_a_header_has_names_of_the_user(tmp_path: Path, statejump: Callable[..., Any]) -> None:
+    loop = measured("coulomb", JOINT)
+    rows = [f"{1e3 * place!r} {force!r}" for place, force in zip(loop["displacement_m"].tolist(), loop["force_N"].tolist())]
+    (tmp_path / "loop.out").write_text("\n".join(rows) + "\n")
+    assert "--columns names them" in statejump("identify", "loop.out").errors
+    found = sj.identify(tmp_path / "loop.out", model="coulomb", columns=["disp [mm]", "force_N"])
+    assert len(found.loop.force) == len(rows)
+    assert found.values["friction"] == pytest.approx(sj.identify(loop, model="coulomb").values["friction"], rel=1e-9)
+    assert statejump("identify", "loop.out", "--model", "coulomb", "--columns", "disp [mm], force_N").status == 0
+    short = statejump("identify", "loop.out", "--columns", "disp [mm],force_N,time_s")
+    assert short.failure == failure("row_of_other_length", cells=2, width=3, line=1)
+    (tmp_path / "named.out").write_text("\"Actuator Displacment\" \"Actuator Force\"\nmm N\n" + "\n".join(rows) + "\n")
+    assert "--columns gives other names" in statejump("identify", "named.out").errors
+    named = sj.identify(tmp_path / "named.out", model="coulomb", columns=["disp [mm]", "force_N"])
+    assert named.values == found.values
+
+
 def test_a_slide_may_slip_before_its_play_is_used_up() -> None:
     """A play of 1 mm has a stiffness of 0.5 kN/mm, so a friction of 150 N is reached after 0.3 mm of it."""
     path = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 400))

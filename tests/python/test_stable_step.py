@@ -67,7 +67,7 @@ def test_damped_spring_slider_by_hand(play_m: float, heated_K: float, stiffer: s
     values["dem"].update(link_damping_ratio=0.2, contact_damping_ratio=0.3, slider_mass_kg=0.01)
     modulus, shear = 70e9 / (2 * 0.91), 70e9 / (4 * 1.7 * 1.3)
     mass = 2700 * 9e-6 * 0.5 / 3 + 0.01
-    bar = 70e9 * 9e-6 / 0.5
+    bar = 70e9 * 9e-6 / (0.5 * (1 + 23.4e-6 * min(0.0, heated_K)))  # of the shortest bar
 
     def contact(force_N: float) -> tuple[float, float]:
         width = (2 * force_N * 0.05 / (4 / 3 * modulus)) ** (1 / 3)

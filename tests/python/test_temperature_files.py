@@ -177,16 +177,17 @@ def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, lis
     assert not members.temperature_change_K[-1].any()
 
 
-@pytest.mark.parametrize("times, unit", [
-    (["0", "0,5", "1,25", "3,5", "5"], "time [h]"),
+@pytest.mark.parametrize("times, unit, degrees", [
+    (["0", "0,5", "1,25", "3,5", "5"], "time [h]", "[°C]"),
+    (["0", "30", "75", "210", "300"], "time (min)", "(C)"),
     (["2026-03-01T00:00:00", "2026-03-01T00:30:00", "2026-03-01T01:15:00", "2026-03-01T03:30:00", "2026-03-01T05:00:00"],
-     "time")])
-def test_hours_dates_and_degrees(times: list[str], unit: str, chain: tuple[Path, list[str], np.ndarray]) -> None:
+     "Time stamp", "[C]")])
+def test_hours_dates_and_degrees(times: list[str], unit: str, degrees: str, chain: tuple[Path, list[str], np.ndarray]) -> None:
     """The format is that of a German spreadsheet. Degrees Celsius need the reference temperature, which is given."""
     path, names, given = chain
     rows = [";".join([time, *(f"{value - 273.15:.4f}".replace(".", ",") for value in row)]) for time, row in zip(times, given)]
     path.with_name("members.csv").write_text("\r\n".join(
-        [";".join([unit, *(f"{name} [°C]" for name in names)]), *rows, ";" * len(names), ""]), encoding="utf-8-sig")
+        [";".join([unit, *(f"{name} {degrees}" for name in names)]), *rows, ";" * len(names), ""]), encoding="utf-8-sig")
     members = sj.load(path).thermal.members
     assert members.names == tuple(names)
     assert members.time_s.tolist() == (1800 * TIMES).tolist()
@@ -230,8 +231,12 @@ WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
                       failure("times_not_increasing", file="members.csv", column="time_s", time="1.0", line=4, before="2.5")),
     "times too close": (lambda rows: [*rows[:2], "1e-320," + rows[2].partition(",")[2], *rows[3:]],
                         failure("times_too_close", file="members.csv", first_s=0.0, second_s=1e-320)),
-    "wrong unit": (lambda rows: [rows[0].replace("L2_K", "L2 [C]"), *rows[1:]],
-                   failure("temperature_column_without_unit", file="members.csv", column="'L2 [C]'", cause="'C' is no unit of temperature")),
+    "wrong unit": (lambda rows: [rows[0].replace("L2_K", "L2 [V]"), *rows[1:]],
+                   failure("temperature_column_without_unit", file="members.csv", column="'L2 [V]'", cause="'V' is no unit of temperature")),
+    "a letter as a name": (lambda rows: [rows[0].replace("L2_K", "Sensor C"), *rows[1:]],
+                           failure("temperature_column_without_unit", file="members.csv", column="'Sensor C'", cause="'C' is no unit of temperature")),
+    "a number as a name": (lambda rows: [rows[0].replace("L2_K", "Sensor 2"), *rows[1:]],
+                           failure("temperature_column_without_unit", file="members.csv", column="'Sensor 2'", cause="it names no unit of temperature")),
     "no unit": (lambda rows: [rows[0].replace("L2_K", "L2"), *rows[1:]],
                 failure("temperature_column_without_unit", file="members.csv", column="'L2'", cause="it names no unit of temperature")),
     "unit of time": (lambda rows: [rows[0].replace("time_s", "time_m"), *rows[1:]],

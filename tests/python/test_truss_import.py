@@ -283,3 +283,10 @@ def test_the_shipped_mast_is_that_of_its_generator(tmp_path: Path) -> None:
     (tmp_path / "make_mast.py").write_bytes((folder / "make_mast.py").read_bytes())
     subprocess.run([sys.executable, tmp_path / "make_mast.py"], check=True)
     assert {path.name: path.read_bytes() for path in tmp_path.glob("*.[bc]*")} == before and len(before) == 3
+
+
+def test_the_command_imports_a_deck_of_springs(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    (tmp_path / "springs.bdf").write_text("BEGIN BULK\nGRID,1,,0.,0.,0.,,123\nGRID,2,,1.,0.,0.,,23\nCELAS2,1,7.+6,2,1\nENDDATA\n")
+    done = statejump("truss", "import", "springs.bdf", "-o", "springs.toml")
+    assert done.status == 0, done.errors
+    assert "links 0" in done.output and sj.load(tmp_path / "springs.toml").reduced().summary["largest_jump_m"] == 0

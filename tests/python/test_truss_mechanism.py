@@ -141,7 +141,7 @@ def test_a_mechanism_that_starts_from_an_equilibrium_is_told_of_the_drawn_shape(
     made["motion"]["start"] = "equilibrium"
     write(made, tmp_path / "stuck.toml", [])
     outcome = statejump("reduced", "--dynamic", tmp_path / "stuck.toml")
-    assert outcome.status != 0 and outcome.failure == failure("held_mechanism", nodes=['A'])
+    assert outcome.status != 0 and outcome.failure == failure("held_mechanism", nodes=['A'], modes=1)
 
 
 def _set(made: dict[str, Any], place: tuple[Any, ...], value: Any) -> None:

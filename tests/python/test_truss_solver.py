@@ -268,7 +268,7 @@ def refused(document: dict[str, Any]) -> StatejumpError:
 def test_mechanism_names_its_free_modes() -> None:
     document = generate.mast(2)
     del document["torsion_spring"]
-    assert refused(document) == failure("held_mechanism")
+    assert refused(document) == failure("held_mechanism", modes=4)
     assert refused(document).numbers["modes"] == 4 and refused(document).nodes
 
 
@@ -295,7 +295,7 @@ NEAR_BUCKLING = 1e-3
 
 def test_column_under_a_load_buckles_at_the_closed_form() -> None:
     path(column(500 * (1 - NEAR_BUCKLING)))
-    assert refused(column(500 * (1 + NEAR_BUCKLING))) == failure("buckled", temperature_change_K=0.0, nodes=["B"])
+    assert refused(column(500 * (1 + NEAR_BUCKLING))) == failure("buckled", temperature_change_K=0.0, nodes=["B"], modes=1)
 
 
 def test_heated_column_buckles_at_its_temperature() -> None:

@@ -47,6 +47,13 @@ def test_two_springs_limit(seen):
         assert found["limit"] / 1.415 <= found["promised"] <= found["limit"]
 
 
+def test_a_spring_that_cooling_shortens_is_stiffer(seen):
+    """The step uses E A / l_T. A spring that heating lengthens keeps the smaller limit of its reference length."""
+    cold, reference, warm = seen["cold"]
+    assert reference == pytest.approx(sqrt(2 * 0.01 * 0.5 / (70e9 * 9e-6)), rel=1e-12)
+    assert cold == pytest.approx(sqrt(0.7) * reference, rel=1e-12) and warm == reference
+
+
 def test_damped_spring_is_stable(seen):
     assert seen["damped"] < 1e-12
 

@@ -36,11 +36,13 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
 @click.option("--journal-radius", type=float, default=None, metavar="M",
               help="Radius of the journal [m], of a moment of friction likewise.")
 @click.option("--ignore", "ignored", multiple=True, metavar="COLUMN", help="Leave out a column of the table.")
+@click.option("--columns", default=None, metavar="NAMES",
+              help="Names of the columns, for a table without a header or in place of its own: disp_mm,force_kN.")
 @RESULTS
 @QUIET
 def identify_command(
     loop_file: Path, model: str, start: str, confidence: float, target: str | None, normal_force: float | None,
-    journal_radius: float | None, ignored: tuple[str, ...], results: Results, quiet: bool,
+    journal_radius: float | None, ignored: tuple[str, ...], columns: str | None, results: Results, quiet: bool,
 ) -> None:
     """Clearance, stiffness, friction and preload of a joint from the measured loop in LOOP.csv, with intervals.
 
@@ -55,12 +57,18 @@ def identify_command(
     with results.folder(f"identify_{loop_file.stem}") as folder:
         try:
             found = identify(loop_file, model=model, start=start, confidence=confidence, target=target,
-                             normal_force_N=normal_force, journal_radius_m=journal_radius, ignored=ignored)
+                             normal_force_N=normal_force, journal_radius_m=journal_radius, ignored=ignored,
+                             columns=[name.strip() for name in columns.split(",")] if columns else ())
         except StatejumpError as refused:
             if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
                 refused.key = OPTIONS[refused.key]
             if isinstance(refused, UnknownKey) and not refused.remedy:
-                refused.remedy = f"--ignore {quote(str(refused.key))} leaves it out"
+                refused.remedy = f"--ignore {quote(str(refused.key))} leaves it out, --columns gives other names"
+            if refused.code in ("column_of_other_unit", "column_without_unit", "columns_of_one_key"):
+                said = f"--ignore {quote(str(refused.details['column']))} leaves it out"
+                refused.remedy = f"{refused.remedy}; {said}" if refused.remedy else said
+            if refused.code == "table_without_header":
+                refused.remedy = "--columns names them, for example --columns displacement_mm,force_kN"
             raise
         written = folder.publish(found.write(folder.staged))
     print_shown(found.summary_lines(), console)

@@ -22,7 +22,11 @@ QUANTITIES = {"m": "length", "N": "force", "s": "time", "K": "temperature", "rad
               "Pa": "pressure", "m2": "area", "N/m": "stiffness", "kg/m3": "density", "kg": "mass"}
 _BRACKETS = (re.compile(r"(.*?)\s*\[([^\[\]]*)\]"), re.compile(r"(.*?)\s*\(([^()]*)\)"))
 _SLASH = re.compile(r"(.*?)\s*/\s*(.+)")
+# In brackets these are temperatures. Behind a blank they are names: "Sensor C".
+IN_BRACKETS = {"C": "°C", "F": "°F"}
 NO_UNIT = ("", "-", "1")
+# Names of a column of times.
+TIMES = ("t", "timestamp", "time stamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")
 
 
 @dataclass(frozen=True)
@@ -63,11 +67,11 @@ def matched(header: Sequence[str], known: Sequence[str], words: Mapping[str, Seq
 
 
 def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column:
-    for base, unit in splits(name):
-        key = bases.get(_plain(base))
-        if key is not None:
-            return Column(name, key, _converted(name, base, unit, key))
-    key = bases.get(_plain(name))
+    key = bases.get(_plain(name))  # first, because a name may have several words: "Time stamp"
+    for base, unit in splits(name) if key is None else ():
+        of = bases.get(_plain(base))
+        if of is not None:
+            return Column(name, of, _converted(name, base, unit, of))
     if key is None:
         near = get_close_matches(name, known, 1)
         raise UnknownKey(name, section=f"column {name!r}", **(
@@ -90,7 +94,8 @@ def splits(name: str) -> Iterator[tuple[str, str]]:
     """Return all possible divisions of a column name into name and unit."""
     for pattern in (*_BRACKETS, _SLASH):
         if bracket := pattern.fullmatch(name.strip()):
-            yield bracket[1], bracket[2].strip()
+            unit = bracket[2].strip()
+            yield bracket[1], IN_BRACKETS.get(unit, unit)
     for found in re.finditer(r"_|\s+|,\s*", name):
         if name[:found.start()].strip() and name[found.end():].strip():
             yield name[:found.start()], name[found.end():].strip()

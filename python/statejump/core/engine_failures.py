@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, cast
 
 from statejump import _engine
 from statejump.core.errors import FailedRun
@@ -24,7 +24,7 @@ class EngineFailed(FailedRun):
         super().__init__(
             what, code=str(failure.kind), joint=failure.joint, nodes=failure.nodes, time_s=failure.time_s,
             temperature_change_K=failure.temperature_change_K, cause=failure.cause or failure.message,
-            remedy=remedy or failure.remedy, **more,
+            remedy=remedy or failure.remedy, **cast("dict[str, Any]", failure.numbers), **more,
         )
         self.reason = str(failure.kind)
         self.argument = failure.key

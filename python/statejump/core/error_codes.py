@@ -952,17 +952,23 @@ CODES: dict[str, Code] = {
         remedy="load the joint with a larger torsion_spring.bias_rad",
     ),
     # Failures of the engine, which gives the sentence
-    "mechanism": Code(text="the truss has free modes though no joint slips"),
-    "held_mechanism": Code(text="the truss has free modes as drawn, with every joint held"),
-    "friction_exhausted": Code(text="the truss has free modes once the friction of joints is at its bound"),
-    "overloaded": Code(text="the loads need more friction at the start than a joint has"),
-    "buckled": Code(text="the truss is unstable whatever the joints do"),
+    "mechanism": Code(text="the truss has free modes though no joint slips", further=("modes",)),
+    "held_mechanism": Code(text="the truss has free modes as drawn, with every joint held", further=("modes",)),
+    "friction_exhausted": Code(
+        text="the truss has free modes once the friction of joints is at its bound",
+        further=("modes",)),
+    "overloaded": Code(text="the loads need more friction at the start than a joint has", further=("load_fraction",)),
+    "buckled": Code(text="the truss is unstable whatever the joints do", further=("modes",)),
     "unloaded_joint": Code(text="a joint carries no force at the start, its position in the play is undetermined"),
     "jump_across_play": Code(text="the contact force of a revolute vanishes on the way"),
     "singular": Code(text="no equilibrium found: the equations are singular to rounding"),
-    "not_converged": Code(text="no equilibrium found: the iteration does not end"),
+    "not_converged": Code(
+        text="no equilibrium found: the iteration does not end",
+        further=("force_residual", "closure_residual_m")),
     "no_continuation": Code(text="the truss has no slow continuation: slip runs away or the truss snaps through"),
     "several_continuations": Code(text="statics does not choose between several continuations"),
-    "too_many_steps": Code(text="the path is found only in too many steps"),
-    "law_left_range": Code(text="a contact law is evaluated outside of its range"),
+    "too_many_steps": Code(text="the path is found only in too many steps", further=("steps", "last_step_s")),
+    "law_left_range": Code(
+        text="a contact law is evaluated outside of its range",
+        further=("penetration_depth_m", "limit_m")),
 }

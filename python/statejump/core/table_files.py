@@ -60,9 +60,10 @@ class Table:
     :param path: file of the table
     :param separator: separator of the cells
     :param header: names of the columns
+    :param names: names of the columns, for a table without a header or in place of its own; empty: the header's
     """
 
-    def __init__(self, path: Path, stream: TextIO) -> None:
+    def __init__(self, path: Path, stream: TextIO, names: Sequence[str] = ()) -> None:
         self.path = path
         self._skipped = 0
         self.separator, lines = self._begin(stream)
@@ -78,13 +79,15 @@ class Table:
         self._counts = len(cells) > 1 and not cells[0]
         if self._counts:
             del cells[0]
-        if all(finite_number(cell.replace(",", ".")) is not None for cell in cells):
+        is_header = not all(finite_number(cell.replace(",", ".")) is not None for cell in cells)
+        if not names and not is_header:
             raise Unreadable(code="table_without_header", file=path, line=self.line)
         for place, cell in enumerate(cells, start=1):
             if not cell:
                 raise Unreadable(code="column_without_name", file=path, line=self.line, column=place + self._counts)
-        self._first = list(self._taken())
-        self.header = tuple(self._with_units(cells))
+        self._first = list(self._taken()) if is_header else [cells]
+        own = self._with_units(cells) if is_header else names
+        self.header = tuple(names or own)
         # Whether a comma is known to be a decimal mark: German Excel uses semicolons for this reason.
         self._decided = self.separator == ";"
         self._comma: tuple[int, str, str] | None = None
@@ -366,10 +369,12 @@ def check_table(path: Path, key: str, missing: str) -> bool:
 
 
 @contextmanager
-def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -> Iterator[Table]:
+def open_table(path: Path, largest_bytes: int | None = None, beside: str = "", names: Sequence[str] = ()
+               ) -> Iterator[Table]:
     """Open a text table for reading.
 
     :param largest_bytes: largest allowed size; ``beside`` is a hint for the error
+    :param names: names of the columns, for a table without a header or in place of its own
     :raises Unreadable: the file may not be read, is not a text table, or has ambiguous commas
     """
     try:
@@ -379,7 +384,7 @@ def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -
     with open_csv(path, encoding) as stream:
         if largest_bytes is not None:
             check_size(path, largest_bytes, beside)
-        table = Table(path, stream)
+        table = Table(path, stream, names)
         yield table
         table.check_commas()
 
@@ -417,7 +422,7 @@ def _all(table: Table) -> tuple[list[int], list[tuple[str, ...]]]:
 
 def read_known(
     path: Path, known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None, texts: Collection[str] = (),
-    ignored: Collection[str] = (),
+    ignored: Collection[str] = (), names: Sequence[str] = (),
 ) -> dict[str, np.ndarray]:
     """Return the columns of a table by key. A key ends with the unit of its values.
 
@@ -425,9 +430,10 @@ def read_known(
     :param words: other names of the quantity of a key, by key
     :param texts: keys whose cells are texts
     :param ignored: names of columns to omit
+    :param names: names of the columns, for a table without a header or in place of its own
     :raises StatejumpError: one sentence with the file, and line or column
     """
-    with open_table(path) as table:
+    with open_table(path, names=names) as table:
         kept = [place for place, name in enumerate(table.header) if name not in ignored]
         with located(file=path):
             for name in sorted(set(ignored) - set(table.header)):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from statejump.core import libraries
-from statejump.core.column_units import Column, conversion, matched, splits
+from statejump.core.column_units import TIMES, Column, conversion, matched, splits
 from statejump.core.errors import StatejumpError, UnknownKey, Unreadable
 from statejump.core.hdf5 import foreign
 from statejump.core.table_files import Table, check_table, numbers_of, open_table, quoted
@@ -21,7 +21,6 @@ from statejump.schema.toml import LARGEST_BYTES
 
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}
-TIMES = ("t", "timestamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # accepted names of a first column
 ACCEPTED = "NAME_K, NAME_degC, NAME [K] or NAME [°C]"
 HDF5_TEMPERATURES = {"temperature_K": 0.0, "temperature_degC": ZERO_CELSIUS_K}
 ENDS = ("@a", "@b")  # endings of names of columns: first and second node of a link
@@ -148,7 +147,8 @@ def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
     for ending, offset in ENDINGS.items():
         if cell.endswith(ending) and cell.removesuffix(ending).isprintable() and cell != ending:
             return cell.removesuffix(ending), Conversion(offset=offset)
-    ways = [(name.strip(), unit) for name, unit in splits(cell) if name.strip() and cell.isprintable()]
+    ways = [(name.strip(), unit) for name, unit in splits(cell)
+            if name.strip() and cell.isprintable() and not unit.isdecimal()]  # "Sensor 1" has no unit
     for name, unit in ways:
         found = conversion(unit, "K")
         if found is not None:

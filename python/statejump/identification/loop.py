@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.column_units import matched
+from statejump.core.column_units import TIMES, matched
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, located
 from statejump.core.table_files import read_known
 from statejump.core.tables import check_columns
@@ -20,7 +20,7 @@ PAIRS = (("displacement_m", "force_N"), ("rotation_rad", "moment_N_m"))
 COLUMNS = ("time_s", *(name for pair in PAIRS for name in pair))
 # What test rigs call these quantities.
 WORDS = {
-    "time_s": ("t", "Zeit"),
+    "time_s": TIMES,
     "displacement_m": ("disp", "displ", "position", "travel", "stroke", "deflection", "slip", "extension",
                        "elongation", "Weg", "Verschiebung", "u", "x"),
     "force_N": ("load", "friction", "friction force", "axial force", "Kraft", "F"),
@@ -102,12 +102,14 @@ class Loop:
         return UNITS[dimension][self.angular]
 
 
-def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ignored: Sequence[str] = ()) -> Loop:
+def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ignored: Sequence[str] = (),
+              columns: Sequence[str] = ()) -> Loop:
     """Return the loop in a table or in given columns.
 
     :param source: table or columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``;
         ``time_s`` is ignored
     :param ignored: names of columns to omit from a table
+    :param columns: names of the columns, for a table without a header or in place of its own
     :raises StatejumpError: the file does not exist, a column is missing or unknown, a value is not finite, or the path
         is constant or has too few rows
     """
@@ -116,9 +118,9 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
     if isinstance(source, Mapping):
         return _loop("loop", _named(source), start)
     file = Path(source)
-    columns = read_known(file, COLUMNS, WORDS, ignored=ignored)
+    found = read_known(file, COLUMNS, WORDS, ignored=ignored, names=columns)
     with located(file=file):
-        return _loop(file.stem, columns, start)
+        return _loop(file.stem, found, start)
 
 
 def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:

@@ -249,6 +249,7 @@ def identify(
     source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = AUTO, start: str = "unknown",
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
     journal_radius_m: float | None = None, ignored: Sequence[str] = (),
+    columns: Sequence[str] = (),
 ) -> Identification:
     """Identify a joint from a measured loop.
 
@@ -267,6 +268,7 @@ def identify(
     :param normal_force_N: normal force in the test [N]; it converts the friction force to a friction coefficient
     :param journal_radius_m: radius of the journal [m]; it converts the friction moment to a friction coefficient
     :param ignored: names of columns to omit from a table
+    :param columns: names of the columns, for a table without a header or in place of its own
     :raises StatejumpError: the file is not a loop, or the joint is unknown
     """
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
@@ -281,7 +283,7 @@ def identify(
                              models=", ".join(MODELS))
     if not names:
         raise NotAllowed("model", model, code="no_joint_model")
-    loop = read_loop(source, start, ignored)
+    loop = read_loop(source, start, ignored, columns)
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
     case_section.check(chosen_target, loop.angular)
     with located(file=source if isinstance(source, (str, Path)) else None):

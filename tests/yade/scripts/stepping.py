@@ -82,6 +82,20 @@ def unguarded(factor):
     return {"largest": largest, "limit": limit, "promised": sj.stable_time_step()}
 
 
+def cold():
+    """The stable step of a spring that cooling shortens to 0.7 of its length, and that of a warm one."""
+    found = []
+    for change in (-300.0, 0.0, 300.0):
+        reset()
+        root, tip = body((0, 0, 0)), body((0.5, 0, 0), mass=0.01, blocked="yzXYZ")
+        engines(links=[sj.ThermalLink(id1=root, id2=tip, youngModulus=70e9, crossSectionArea=9e-6, stressFreeLength=0.5,
+                                      thermalExpansion=1e-3, program=constant(change))])
+        O.dt = 1e-9
+        O.step()  # the temperature changes behind time 0
+        found.append(sj.stable_time_step())
+    return found
+
+
 def damped(factor):
     """One spring and damper, dt = factor times stable_time_step()."""
     reset()
@@ -220,6 +234,7 @@ finish(
         "global": global_stepper(),
         "spring": {f"{f} {b}": spring(f, b) for f in (0.95, 1.05) for b in (False, True)},
         "unguarded": {str(f): unguarded(f) for f in (0.95, 1.05)},
+        "cold": cold(),
         "damped": damped(0.95),
         "joint": {str(i): joint(0.95, i) for i in (0.5, 0.4, 0.02)},
         "too_large_contact": too_large_contact(),

@@ -43,10 +43,11 @@ def largest_stop_force(case: SpringSliderCase) -> float:
 
 
 def link_stiffness(case: SpringSliderCase) -> float:
-    """k = E A/l0 [N/m]."""
+    """Largest k = E A/l_T [N/m]: that of the shortest stress-free length of the temperature program."""
     link = case.link
+    strain = min(0.0, *(case.thermal_strain(change) for change in case.turning_changes_K))
     return physics.axial_stiffness_N_per_m(
-        link.young_modulus_Pa, link.cross_section_area_m2, link.stress_free_length_m
+        link.young_modulus_Pa, link.cross_section_area_m2, link.stress_free_length_m * (1 + strain)
     )
 
 

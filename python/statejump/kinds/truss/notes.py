@@ -35,7 +35,8 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> str:
     if note["kind"] == "not_located":
         return (f"many elements are slack {at}: from there the times at which their joints make and lose contact are "
                 "resolved to one increment; more reduced.increments_per_branch resolve them better")
-    return (f"{_named(note['joints'])}: constrain a displacement more than once {at}; the reactions are one solution "
+    verb = "constrains" if len(note["joints"]) == 1 else "constrain"
+    return (f"{_named(note['joints'])}: {verb} a displacement more than once {at}; the reactions are one solution "
             "of many, the displacements are unique")
 
 

@@ -138,7 +138,7 @@ def _slider_in_link(made: Document, link: dict[str, Any], nodes: Mapping[str, An
 
 
 def _revolute(made: Document, node: dict[str, Any], values: dict[str, Any], dimension: int) -> list[str]:
-    here = [link for link in made["link"] if node["name"] in link["nodes"]]
+    here = [link for link in made.get("link", ()) if node["name"] in link["nodes"]]
     names = {link["name"]: link for link in here}
     moved = names[_one(LINK, values.pop(LINK), names)]
     journal = {"name": f"{node['name']}_{moved['name']}", "position_m": list(node["position_m"])}

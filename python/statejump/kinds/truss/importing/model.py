@@ -32,8 +32,11 @@ class Bar:
     :param expansion_zero: reference temperature of the secant coefficients
     :param more_mass: mass per length in addition to that of the density
     :param why_no_area: reason why the deck gives no area for the bar
+    :param why_no_modulus: reason why the deck gives no Young's modulus for the bar
     :param bends: whether it is a beam whose bending is omitted
     :param lengthened: ratio of its length to the distance of its nodes, to which rigid ends connect it
+    :param elongation: stress-free length minus the distance of its nodes, without rigid ends
+    :param released: whether its first and its second end release the axial force
     """
 
     name: str
@@ -50,8 +53,11 @@ class Bar:
     expansion_zero: float = 0.0
     more_mass: float = 0.0
     why_no_area: str = ""
+    why_no_modulus: str = ""
     bends: bool = False
     lengthened: float = 1.0
+    elongation: float = 0.0
+    released: tuple[bool, bool] = (False, False)
 
 
 @dataclass

@@ -58,7 +58,7 @@ def read(path: Path, form: str | None = None, bars: Path | None = None, options:
     else:
         deck = mesh.read(path) if form == "mesh" else \
             {"abaqus": abaqus.read, "nastran": nastran.read}[form](path, options or Options())
-    if not deck.bars:
+    if not deck.bars and not deck.springs:
         raise Unreadable(code="no_bars", file=path,
                          remedy=", ".join(f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)
     return deck

@@ -22,7 +22,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
     """Return sizes and ranges of an imported truss."""
     positions = _positions(made)
     size = np.ptp(np.array(list(positions.values())), axis=0)
-    links = made["link"]
+    links = made.get("link", ())
     forces = [float(np.linalg.norm(node["force_N"])) for node in made["node"] if "force_N" in node]
     mass = sum(node.get("mass_kg", 0.0) for node in made["node"]) + sum(_mass(link, positions) for link in links)
     thermal = made["thermal"]
@@ -50,7 +50,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
 def hints(made: Mapping[str, Any]) -> list[str]:
     """Return hints that the units of a deck may be wrong, one sentence each."""
     positions = _positions(made)
-    links = made["link"]
+    links = made.get("link", ())
     lengths = [_length(link, positions) for link in links]
     found = []
     checks: tuple[tuple[str, Sequence[float], float, float, str], ...] = (
@@ -88,10 +88,12 @@ def _mass(link: Mapping[str, Any], positions: Mapping[str, np.ndarray]) -> float
 
 
 def _coefficients(made: Mapping[str, Any]) -> list[float]:
-    return [link["thermal_expansion_per_K"] for link in made["link"] if "thermal_expansion_per_K" in link] + [
+    return [link["thermal_expansion_per_K"] for link in made.get("link", ()) if "thermal_expansion_per_K" in link] + [
         value for item in made.get("expansion", ()) for value in item["thermal_expansion_per_K"]]
 
 
 def _range(values: Sequence[float]) -> str:
+    if not values:
+        return "none"
     low, high = min(values), max(values)
     return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"

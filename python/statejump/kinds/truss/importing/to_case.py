@@ -93,7 +93,7 @@ def case_document(
     dimension = _dimension(deck, used)
     more = dict(sections or {})
     changes = [0.0] * len(deck.bars) if "thermal" in more else _changes(deck, temperature_change_K)
-    peak = max(changes, key=abs)
+    peak = max(changes, key=abs, default=temperature_change_K or 0.0)
     if any(deck.gravity) and density_kg_per_m3 is None and not deck.mass and not any(bar.density for bar in deck.bars):
         deck.leave("gravity", "nothing has a mass", 0)
         deck.gravity = [0.0, 0.0, 0.0]
@@ -270,15 +270,15 @@ def _node(deck: Deck, name: str, dimension: int, units: Units) -> dict[str, Any]
 def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
           density: float | None, given: Mapping[str, float]) -> dict[str, Any]:
     numbers: dict[str, float] = {}
-    for key, words, value, unit in (("young_modulus_Pa", "Young's modulus", bar.young_modulus, units.stress),
-                                    ("cross_section_area_m2", "cross-section area", bar.area, units.length_m**2)):
+    for key, words, value, unit, why in (
+            ("young_modulus_Pa", "Young's modulus", bar.young_modulus, units.stress, bar.why_no_modulus),
+            ("cross_section_area_m2", "cross-section area", bar.area, units.length_m**2, bar.why_no_area)):
         if value:
             numbers[key] = in_units(value, unit)
         elif key in given:
             numbers[key] = given[key]
         else:
-            raise StatejumpError(code="bar_without_property", file=deck.path,
-                                 cause=bar.why_no_area if words[0] == "c" and bar.why_no_area else None, kind=bar.kind,
+            raise StatejumpError(code="bar_without_property", file=deck.path, cause=why or None, kind=bar.kind,
                                  name=bar.name, property=words, option=OPTIONS[key])
     made: dict[str, Any] = {
         "name": _called("L", bar.name),
@@ -302,6 +302,9 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
         if key in made:
             made[key] *= bar.lengthened
     made["young_modulus_Pa"] /= bar.lengthened
+    if bar.elongation:
+        distance = np.linalg.norm(np.subtract(deck.nodes[bar.nodes[1]], deck.nodes[bar.nodes[0]]))
+        made["stress_free_length_m"] = in_units(float(distance) + bar.elongation, units.length_m)
     if bar.poisson_ratio is not None:
         made["poisson_ratio"] = bar.poisson_ratio
     if peak and change != peak:

@@ -153,7 +153,7 @@ def _bars(model: Model) -> None:
                 if section.shape:
                     _taper(model, bar, section)
             else:
-                bar.why_no_area = "no section names it"
+                bar.why_no_area = bar.why_no_modulus = "no section names it"
             model.deck.bars.append(bar)
         model.deck.take(card, "link" if one.family == BAR
                         else "link: it carries axial force only, its bending is left out")

@@ -9,7 +9,7 @@ import numpy as np
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.importing.abaqus.keywords import Block
 from statejump.kinds.truss.importing.abaqus.model import Model, Scope
-from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, MASS
+from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, DYNAMIC, MASS
 from statejump.kinds.truss.importing.coordinates import Frame, about_axis, by_axis
 from statejump.kinds.truss.importing.model import Equation, Moment, quoted
 
@@ -70,6 +70,9 @@ def transform(model: Model, block: Block, scope: Scope) -> None:
 def initial(model: Model, block: Block, scope: Scope) -> None:
     """Read the stress-free temperatures of links."""
     kind = block.parameters.get("TYPE", "").upper()
+    if kind in ("DISPLACEMENT", "VELOCITY", "ROTATING VELOCITY", "ACCELERATION"):
+        model.deck.leave(f"*INITIAL CONDITIONS, TYPE={kind}", DYNAMIC, block.line)
+        return
     if kind != "TEMPERATURE":
         card = f"*INITIAL CONDITIONS, TYPE={quoted(kind)[1:-1]}"
         model.deck.refuse(card, "unsupported_type", block.line, "INITIAL CONDITIONS", only="TEMPERATURE")

@@ -24,6 +24,7 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "PMASS": properties.pmass, "CMASS1": elements.cmass, "CMASS2": elements.cmass, "CONM1": elements.conm1,
     "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force, "FORCE2": loads.force, "MOMENT": loads.moment,
     "MOMENT1": loads.moment, "MOMENT2": loads.moment, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
+    "DEFORM": elements.deform,
     "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "RROD": bodies.rrod,
     "MPC": bodies.mpc,
 }

@@ -36,17 +36,26 @@ def bar(reader: Reader, card: Card) -> None:
     default = name
     for other in reader.cards.get({"CBAR": "BAROR", "CBEAM": "BEAMOR"}.get(card.name, ""), []):
         default = other[1] or name
-    if beam:
-        for place in (8, 9):
-            if set(card[place]) & set("123"):
-                reader.deck.refuse(f"{card.name}.{'PA' if place == 8 else 'PB'}",
-                                   "pin_flags", card.line, flags=quoted(card[place]))
     ends = (reader.node(card, 2), reader.node(card, 3))
     made = Bar(name, ends, card.name, bends=beam)
     if beam and any(card.fields[10:16]):
         made.lengthened = _lengthened(reader, card, ends)
-    reader.deck.take(card.name, "link: it carries axial force only, its bending is left out" if beam else "link")
+    if beam:
+        made.released = (_releases(reader, card, 8), _releases(reader, card, 9))
+    if any(made.released):
+        reader.deck.take(card.name, "masses of both ends: a pin flag releases the axial force")
+    else:
+        reader.deck.take(card.name, "link: it carries axial force only, its bending is left out" if beam else "link")
     reader.bars[name] = (card.line, made, reader.whole(card, 1, default))
+
+
+def _releases(reader: Reader, card: Card, place: int) -> bool:
+    """Return whether a pin flag releases the axial force. The other flags release what a pin-jointed bar does not have:
+    2 and 3 shear forces, 4 to 6 moments."""
+    flags = card[place].replace(" ", "")
+    if set(flags) - set("0123456"):
+        raise reader.deck.fail(card.line, "deck_bad_number", text=quoted(flags), wanted="pin flags of 1 to 6")
+    return "1" in flags
 
 
 def _lengthened(reader: Reader, card: Card, ends: tuple[str, str]) -> float:
@@ -79,6 +88,18 @@ def conrod(reader: Reader, card: Card) -> None:
     made.more_mass = reader.number(card, 7, 0.0)
     reader.deck.take(card.name, "link")
     reader.conrods[name] = (card.line, made, reader.whole(card, 3))
+
+
+def deform(reader: Reader, card: Card) -> None:
+    """Read the elongations of bars without stress (DEFORM)."""
+    for place in (1, 3, 5):
+        if card[place]:
+            name = reader.whole(card, place)
+            found = reader.bars.get(name) or reader.conrods.get(name)
+            if found is None:
+                raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
+            found[1].elongation += reader.number(card, place + 1)
+            reader.deck.take(card.name, "stress-free length of a link")
 
 
 def celas(reader: Reader, card: Card) -> None:
@@ -211,7 +232,20 @@ def finish_bars(reader: Reader) -> None:
             made.density = of.density * mass_area / made.area
         if made.more_mass and made.area:
             made.density = (made.density or 0.0) + made.more_mass / made.area
-        deck.bars.append(made)
+        if any(made.released):
+            _weigh_ends(reader, line, made)
+        else:
+            deck.bars.append(made)
+
+
+def _weigh_ends(reader: Reader, line: int, of: Bar) -> None:
+    """Give half the mass of a bar without axial force to each end that is not held."""
+    deck = reader.deck
+    between = np.subtract(deck.nodes[of.nodes[1]], deck.nodes[of.nodes[0]])
+    mass = float(np.linalg.norm(between)) * of.lengthened * (of.density or 0.0) * (of.area or 0.0)
+    for node in of.nodes:
+        if mass and not all(is_held(deck, node, axis) for axis in np.eye(3)):
+            deck.weigh(node, mass / 2, line, of.kind)
 
 
 def cmass(reader: Reader, card: Card) -> None:

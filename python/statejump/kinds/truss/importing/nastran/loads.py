@@ -130,7 +130,7 @@ def pload1(reader: Reader, card: Card) -> None:
     factor, name = reader.factor(card, "load") or 0.0, reader.whole(card, 1)
     if name not in reader.bars:
         raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
-    ends = reader.bars[name][1].nodes
+    ends, released = reader.bars[name][1].nodes, reader.bars[name][1].released
     first, second = (np.array(reader.deck.nodes[end]) for end in ends)
     length = float(np.linalg.norm(second - first))
     axis = (second - first) / length if length else np.zeros(3)
@@ -155,6 +155,11 @@ def pload1(reader: Reader, card: Card) -> None:
         # Integral of load times position along the bar, as a fraction of its length.
         second_share = span * length * (low * start + low * span / 2 + rise * start / 2 + rise * span / 3)
         shares = (total - second_share, second_share)
+    if all(released):
+        reader.deck.refuse(card.name, "released_bar", card.line)
+        return
+    if any(released):  # the other end carries the whole load
+        shares = (0.0, sum(shares)) if released[0] else (sum(shares), 0.0)
     for node, share in zip(ends, shares):
         reader.deck.load(node, [float(part) * share * factor for part in along], card.line, card.name)
     reader.deck.take(card.name, "dead loads of both ends")

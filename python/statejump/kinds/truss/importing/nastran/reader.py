@@ -83,6 +83,8 @@ class Reader:
         text = card[place]
         if not text and default is not None:
             return default
+        if not text:
+            raise self.fail(card, "deck_incomplete", needed=f"field {place + 2}")
         return self.name(card.line, text)
 
     def name(self, line: int, text: str) -> str:

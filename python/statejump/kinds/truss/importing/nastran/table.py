@@ -33,7 +33,8 @@ CARDS: dict[str, Card] = table(
     used("CROD", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CTUBE", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CONROD", "link", "EID G1 G2 MID A J C NSM", idle={"J C": TURNS}),
-    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar, pin flags of 4 to 6",
+    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar; masses of both ends, where a "
+           "pin flag releases the axial force",
            f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
            idle={f"X1 X2 X3{more}": BENDS}, bending=True)
       for name, more in (("CBAR", ""), ("CBEAM", " SA SB"))),
@@ -94,6 +95,7 @@ CARDS: dict[str, Card] = table(
     used("FORCE2", "dead load", "SID G F G1 G2 G3 G4", sets="load"),
     *(used(name, TWIST, f"SID G {more}", sets="load") for name, more in (
         ("MOMENT", "CID M N1 N2 N3"), ("MOMENT1", "M G1 G2"), ("MOMENT2", "M G1 G2 G3 G4"))),
+    used("DEFORM", "stress-free length of a bar", "SID EID1 D1 EID2 D2 EID3 D3", sets="deform"),
     used("PLOAD1", "dead loads of both ends, of a load along the bar", "SID EID TYPE SCALE X1 P1 X2 P2", sets="load"),
     used("GRAV", "gravity", "SID CID A N1 N2 N3 MB", idle={"MB": "superelement: the structure is taken as one"},
          sets="load"),
@@ -108,7 +110,6 @@ CARDS: dict[str, Card] = table(
     refused("PLOAD PLOAD2 PLOAD3 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
     refused("RFORCE RFORCE1 ACCEL ACCEL1", "loads of a field of accelerations", sets="load"),
     refused("SLOAD", "load on a scalar point", sets="load"),
-    refused("DEFORM", "a bar that is too long", sets="deform"),
     refused("TEMPRB TEMPP1 TEMPP2 TEMPP3 TEMPB3 TEMPF TEMPN1 TEMPBC TEMPAX", "temperatures of elements",
             sets="temperature"),
     refused("MATT1 MATT2 MATT3 MATT5 MATT8 MATT9", "properties that depend on temperature"),
@@ -171,7 +172,7 @@ PARAMS: dict[str, Card] = table(
          "AUTOQSET RMXPANEL F56 RESLTOPT SOLADJC SDRPOPT SDRDENS SERST SECOMB SUBCASID MPCX EXTUNIT EXTDROUT OELMSET "
          "OGRDSET ISAVE NEWSET HDF5 CONM2 PEDGE MNLEMPRT FLUIDMP STRUCTMP FREQDEP OMACHPR GYROAVG WR3 WR4 ROTCSV "
          "ROTGPF ENFMETH ENFMOTN NQMAX CYCIO CYCSEQ OIBULK POSTEXT UNITSYS DBCDIAG DMIGNRG LSTRN COMPARE PNCHDB EPSHT "
-         "MAXIT SUPER TINY2 OMSGLVL BETAD EPSIO GRDEQ",
+         "MAXIT SUPER TINY2 OMSGLVL BETAD EPSIO GRDEQ SESDAMP",
          "output, damping, or how a program solves"),
     idle("ARP_TOL CBMIN3 CBMIN4 CBMIN4T CHKGRDS CRS_CCS CUSERIN DARPACK DELBAN EIGESTL EIGNORM2 ELFORCEN EPSERR EPSIL "
          "EQCHECK GRIDSEQ LANCMETH MXITERI PRTBASIC PRTCGLTM PRTCORD PRTCSTM PRTDLR PRTDOF PRTFOR PRTGMN PRTGOA "
@@ -185,7 +186,7 @@ CONTROL: dict[str, Card] = table(
     used("SUBCASE", "the first one, or that of --step"),
     used("SPC", "set of supports"), used("LOAD", "set of loads"), used("MPC", "set of MPC"),
     used("TEMPERATURE", "LOAD, BOTH: temperatures; INITIAL: those free of stress of materials without TREF"),
-    used("DEFORM", "set of DEFORM, which is not supported"), used("NSM", "set of NSM, which is not supported"),
+    used("DEFORM", "set of DEFORM"), used("NSM", "set of NSM, which is not supported"),
     used("SUPORT1", "set of SUPORT1, which is not supported in statics"),
     refused("K2GG M2GG P2G B2GG A2GG", "matrices that are added to the structure"),
     refused("ANALYSIS", "of HEAT: its supports are temperatures"),
