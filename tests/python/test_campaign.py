@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 
 from conftest import BUILT, REPOSITORY, Outcome
-from failures import Failure, failing, failure
+from failures import Failure, failing, failure, note
 
 import statejump as sj
 from statejump.campaign import distribute, execute, journal, summary, tables, work
@@ -596,7 +596,7 @@ def test_damaged_journal(tmp_path: Path, write: Callable[..., Path]) -> None:
             assert line <= 3
         else:
             with journal.Journal(tmp_path, campaign, restart=False) as kept:
-                assert kept.finished == {0, 1} and "was torn and is cut off" in kept.note
+                assert kept.finished == {0, 1} and kept.note == note("journal_torn", path=path)
             assert path.read_bytes() == whole[:last]
     for end in range(last + 1, len(whole)):
         path.write_bytes(whole[:end])

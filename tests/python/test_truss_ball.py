@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from conftest import Outcome
-from failures import Failure, failing, failure
+from failures import Failure, failing, failure, note
 
 import statejump as statejump_package
 from statejump import _paths
@@ -213,9 +213,7 @@ def test_rigid_ball_moves_within_its_cone_and_from_the_drawn_shape_only() -> Non
     # On the cone to what may be across its direction, 5e-9, and the contact problem's 1e-8.
     assert np.all(size <= 0.1 * normal * (1 + 2e-8))
     # One step ends a tenth of the clearance beside the directions of its middle.
-    assert run.warnings == (
-        "1 of 20000 steps had no solution as they were: they were damped and taken in parts down to 0.0001 s; "
-        "set motion.steps_per_cycle to more to follow what swings",)
+    assert run.warnings == (note("steps_damped", inexact=1, steps=20_000, time_step_s=1e-4),)
     for name in ("reduced", "dem"):
         with failing("rigid_ball_joint_at_rest"):
             getattr(case, name)()
