@@ -181,7 +181,7 @@ def test_wrong_answers_name_law_joint_and_time(yade: str, monkeypatch: pytest.Mo
     script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
     done = ended([yade, "-n", "-x", script, "wrong"], STATEJUMP_LAWS=str(wrong_law.parent),
                  PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
-    assert f"wrong ({wrong_law}): {complaint} (contact of bodies 0 and 1, time 0 s" in done.stdout, done.stderr
+    assert f"wrong ({wrong_law}): {complaint} (contact of bodies 0 and 1" in done.stdout, done.stderr
 
 
 def mistake(statejump, *arguments: object, **environment: str) -> dict[str, Any]:
@@ -202,11 +202,11 @@ def test_mistakes_of_a_header(statejump, tmp_path: Path) -> None:
     assert mistake(statejump, none, "--folder", tmp_path / "laws") == failure("law_does_not_compile", header="none.hpp")
     kind.write_text(text.replace("double operator()", "double other"))
     found = mistake(statejump, kind, "--folder", tmp_path / "laws")
-    assert found == failure("law_does_not_compile", header="kind.hpp") and "of no kind of law" in found["cause"]
+    assert found == failure("law_does_not_compile", header="kind.hpp") and "no kind" in found["cause"]
     taken = tmp_path / "taken.hpp"
     taken.write_text(text.replace('"twin"', '"flores"'))
     found = mistake(statejump, taken, "--folder", tmp_path / "laws")
-    assert found == failure("bad_law", file="taken.hpp") and found["message"].endswith(f" and that of {taken}")
+    assert found == failure("bad_law", file="taken.hpp") and found["message"].endswith(f" {taken}")
     assert list((tmp_path / "laws").iterdir()) == []
 
 
@@ -254,7 +254,8 @@ def test_object_that_is_no_law(statejump, tmp_path: Path) -> None:
     (tmp_path / "other.so").write_text("no object")
     outcome = statejump("laws", STATEJUMP_LAWS=str(tmp_path), XDG_DATA_HOME="/nonexistent")
     assert outcome.status == 2
-    assert outcome.errors.startswith(f"error: {tmp_path / 'other.so'} is no law: ")
+    assert outcome.failure == failure("bad_law")
+    assert outcome.errors.startswith(f"error: {tmp_path / 'other.so'} ")
 
 
 def test_own_folder(statejump, tmp_path: Path) -> None:

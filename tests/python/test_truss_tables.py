@@ -206,7 +206,7 @@ WRONG = {
         "name,position_m,fixed\nN0,0 0,w\n", "node"),
     failure("duplicate_name", file="case.toml", item="node 2", key="name", value="N0", part="node"): (
         "name,position_m\nN0,0 0\nN0,1 0\n", "node"),
-    failure("missing_key", file="case.toml", item="node 2", key="name", cause="a text in quotes is needed"): ("name,position_m\nN0,0 0\n,1 0\n", "node"),
+    failure("missing_key", file="case.toml", item="node 2", key="name"): ("name,position_m\nN0,0 0\n,1 0\n", "node"),
     failure("missing_key", file="case.toml", item="tables.node", key="position_m", allowed=Range(-1000000.0, 1000000.0, "m")): ("name\nN0\n", "node"),
     failure("cell_not_boolean", file="spring.csv", line=2, column="'cable'", cell="'yes'"): (
         "name,nodes,stiffness_N_per_m,cable\nS,N0 N1,1,yes\n", "spring"),

@@ -113,8 +113,7 @@ def test_the_bearing_that_an_import_chose(statejump: Callable[..., Outcome], tab
     joint = "node=C,link=a,journal_radius_m=0.01,radial_clearance_m=1e-5,friction_coefficient=0.2"
     done = imported(statejump, "--joint", joint)
     assert done.status == 0, done.errors
-    assert ("chosen: revolute 'R_C_a': bearing_link = 'b'; 'd' could be it as well, bearing_link=NAME in --joint chooses"
-            in done.output)
+    assert re.search(r"revolute 'R_C_a': bearing_link = 'b'; 'd' .* --joint ", " ".join(done.output.split()))
     done = imported(statejump, "--force", "--joint", f"{joint},bearing_link=d")
     assert done.status == 0 and "chosen" not in done.output
     assert sj.load(tables / "t.toml")["revolute.R_C_a.bearing_link"] == "d"

@@ -42,7 +42,7 @@ class Kept:
 
 
 class Journal(Kept):
-    """The journal of a campaign, as a context manager. ``note`` reports the removal of a torn line, if there was one."""
+    """The journal of a campaign, as a context manager. ``note`` reports the removal of a torn line, if any."""
 
     def __init__(self, folder: Path, campaign: Plan, restart: bool) -> None:
         """Open or create the journal. :raises StatejumpError: the journal belongs to another campaign, or is damaged"""

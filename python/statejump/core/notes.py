@@ -10,10 +10,12 @@ from __future__ import annotations
 from typing import Any
 
 NOTES: dict[str, str] = {
+    # Case files
+    "key_moved": "{where}{path} is {now} now; the old place is still understood",
     # Temperature programs
     "return_added": (
-        "{where}: a return to the reference temperature of {return_s:.6g} s is added, and the state jump is that after "
-        "it (thermal.return_to_reference)"
+        "{where}: a return to the reference temperature of {return_s:.6g} s is added, and the state jump is that "
+        "after it (thermal.return_to_reference)"
     ),
     "no_return": "{where}, not at the reference temperature: it has no state jump; {remedy}",
     "reference_in_kelvin": (
@@ -21,8 +23,8 @@ NOTES: dict[str, str] = {
     ),
     # Implausible values
     "clearance_above_radius": (
-        "{what} {name!r}{others}: the radial clearance of {clearance_m:.4g} m is above the radius of {radius_m:.4g} m; "
-        "check the units"
+        "{what} {name!r}{others}: the radial clearance of {clearance_m:.4g} m is above the radius of {radius_m:.4g} "
+        "m; check the units"
     ),
     "modulus_implausible": (
         "{what} {name!r}{others}: Young's modulus of {young_modulus_Pa:.4g} Pa is below 1 MPa; check the units"
@@ -33,26 +35,26 @@ NOTES: dict[str, str] = {
     ),
     # Spring and slider
     "starts_at_stop": (
-        "the preload force holds the block at a stop at the start; the stop is rigid in the reduced model, in the DEM it "
-        "gives, so that the block slips as its load changes"
+        "the preload force holds the block at a stop at the start; the stop is rigid in the reduced model, in the DEM "
+        "it gives, so that the block slips as its load changes"
     ),
     "clearances_kept": (
-        "the reduced model keeps the clearances of the reference temperature; expansion of pad and slot changes them by "
-        "up to {change_m:.3g} m in the DEM"
+        "the reduced model keeps the clearances of the reference temperature; expansion of pad and slot changes them "
+        "by up to {change_m:.3g} m in the DEM"
     ),
     "cycles_left_out": (
-        "history and events are those of the first and the last {shown:,} of {cycles:,} cycles; all others were computed "
-        "and left out"
+        "history and events are those of the first and the last {shown:,} of {cycles:,} cycles; all others were "
+        "computed and left out"
     ),
     # Quasi-static paths of trusses
     "large_start": (
-        "the loads move the structure by {value:.3g} m at the start, {share:.1%} of its size: the path belongs to that "
-        "configuration, not to the drawn one"
+        "the loads move the structure by {value:.3g} m at the start, {share:.1%} of its size: the path belongs to "
+        "that configuration, not to the drawn one"
     ),
     "redundant_constraint": "{named}: follows from supports and the constraints before it; it changes nothing",
     "slack": (
-        "{named}: no contact {at}; the element carries no force and keeps its position in the play until the clearance "
-        "closes"
+        "{named}: no contact {at}; the element carries no force and keeps its position in the play until the "
+        "clearance closes"
     ),
     "snap": (
         "{named}: slip runs away within the play {at}; dashpots in the joints carry the structure on to a stable "
@@ -71,13 +73,13 @@ NOTES: dict[str, str] = {
         "elastic"
     ),
     "changes_together": (
-        "in {increments} several joints changed their status: slip that turned round between two of these changes is not "
-        "seen; reduced.locate_events = true locates them"
+        "in {increments} several joints changed their status: slip that turned round between two of these changes is "
+        "not seen; reduced.locate_events = true locates them"
     ),
     # Trusses in motion
     "contacts_too_stiff": (
-        "in {inexact} of {steps} steps a contact was stiffer than explicit steps of {time_step_s:.4g} s are stable with: "
-        "set motion.steps_per_cycle to more"
+        "in {inexact} of {steps} steps a contact was stiffer than explicit steps of {time_step_s:.4g} s are stable "
+        "with: set motion.steps_per_cycle to more"
     ),
     "steps_damped": (
         "{inexact} of {steps} steps had no solution as they were: they were damped and taken in parts down to "
@@ -97,12 +99,12 @@ NOTES: dict[str, str] = {
     ),
     # Comparisons
     "slack_not_compared": (
-        "{named}: hanging slack in the play of joints, where no model determines a position; compared only "
-        "where forces act on them"
+        "{named}: hanging slack in the play of joints, where no model determines a position; compared only where "
+        "forces act on them"
     ),
     "friction_without_period": (
-        "a motion that only friction holds has no natural period; the reduced model has no inertia: "
-        "'statejump compare --dynamic' gives it one"
+        "a motion that only friction holds has no natural period; the reduced model has no inertia: 'statejump "
+        "compare --dynamic' gives it one"
     ),
     "heated_too_fast": (
         "the slowest natural period, {natural_period}, is {share:.2g} of the thermal one; undamped, corners of the "
@@ -110,6 +112,10 @@ NOTES: dict[str, str] = {
     ),
     "still_moving": (
         "the DEM still moves at the end, with {energy} of kinetic energy: raise the damping ratios in [dem]{longer}"
+    ),
+    "stage_of_reduced_model": "a stage of the reduced model; no contact of the DEM changes its state",
+    "stop_carries": (
+        "the stop carries: a rigid one holds the block still, that of the DEM gives and lets it creep on the floor"
     ),
     "pads_bend": (
         "the reduced model holds slider {joint!r} rigidly across its axis, in the DEM its pad bends there by up to "
@@ -129,13 +135,13 @@ NOTES: dict[str, str] = {
     # Control
     "nothing_to_control": "{what}: there is nothing to control.",
     "no_preload": (
-        "No preload spring up to {largest_N_per_m:g} N/m, the largest that a case may have, keeps the jump at or below "
-        "{wanted}."
+        "No preload spring up to {largest_N_per_m:g} N/m, the largest that a case may have, keeps the jump at or "
+        "below {wanted}."
     ),
     "no_preload_needed": "No preload spring is needed: without one the jump is {jump}, not above {wanted}.",
     "smallest_preload": (
-        "The smallest preload spring that keeps the jump at or below {wanted} has {stiffness_N_per_m:.6g} N/m ({how}); "
-        "solved with it, the jump is {jump}."
+        "The smallest preload spring that keeps the jump at or below {wanted} has {stiffness_N_per_m:.6g} N/m "
+        "({how}); solved with it, the jump is {jump}."
     ),
     "no_value_found": "{subject}: no scanned value from {low} to {high} keeps the jump at or below {wanted}{least}.",
     "nothing_needed": "{subject}: nothing is needed, the jump is {jump} without.",
@@ -149,7 +155,8 @@ NOTES: dict[str, str] = {
         "those that are."
     ),
     "jump_not_monotone": (
-        "{parameter}: the jump is not monotone, it turns near {at}; a range that is narrower than the scan may be missed"
+        "{parameter}: the jump is not monotone, it turns near {at}; a range that is narrower than the scan may be "
+        "missed"
     ),
     "values_without_path": (
         "{parameter}: with {failed} scanned value(s) the truss has no path, see the notes in control.csv"
@@ -178,6 +185,8 @@ NOTES: dict[str, str] = {
         "{independent:.0f}; the noise is not independent or the joint is another one"
     ),
     # Campaigns
+    "sample_failed": "the run failed: {error}: {text}",
+    "worker_ended": "the run ended its worker process, time and again",
     "journal_torn": "{path}: the last line was torn and is cut off; its samples are run again",
 }
 

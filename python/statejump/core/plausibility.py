@@ -58,8 +58,8 @@ def warn_of_reference(key: str, reference_temperature_K: float) -> None:
     """Warn of a reference temperature that looks like degrees Celsius."""
     if reference_temperature_K < LEAST_REFERENCE_K:
         celsius, kelvin = reference_temperature_K - 273.15, reference_temperature_K + 273.15
-        warnings.warn(Note("reference_in_kelvin", key=key, given=reference_temperature_K, celsius=celsius, kelvin=kelvin),
-                      stacklevel=2)
+        warnings.warn(Note("reference_in_kelvin", key=key, given=reference_temperature_K, celsius=celsius,
+                           kelvin=kelvin), stacklevel=2)
 
 
 def axial_strains(names: Sequence[str], axial_force_N: np.ndarray, rigidity_N: np.ndarray) -> Iterable[str]:

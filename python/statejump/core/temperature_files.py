@@ -190,7 +190,7 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
     if reference is not None:
         warn_of_reference(f"{section}reference_temperature_K", reference)
         changes = changes + (read.offset_K - reference)
-        refuse(read, read.values + read.offset_K < 0, "is below absolute zero")
+        refuse(read, read.values + read.offset_K < 0, "is below absolute zero", "below_absolute_zero")
     elif read.offset_K.any():
         raise MissingKey(f"{section}reference_temperature_K", code="reference_missing", table=read.path.name)
     refuse(read, np.abs(changes) > LARGEST_CHANGE_K,

@@ -124,8 +124,8 @@ class Identification:
             if not interval.bounded:
                 cause = self.because.get(name)
                 why = f", it depends on {cause}, which reaches the end of its range" if cause else ""
-                sentences.append(self._not_identifiable(name, interval, why, "other_parameter" if cause else "unbounded",
-                                                        depends_on=cause))
+                reason = "other_parameter" if cause else "unbounded"
+                sentences.append(self._not_identifiable(name, interval, why, reason, depends_on=cause))
         return sentences
 
     def _laws(self) -> list[Note]:

@@ -104,8 +104,8 @@ def _sentence(search: Search, wanted: float) -> Note:
         return Note("nothing_needed", subject=subject, jump=plain(found["jump_with_it_m"], "m"))
     elasticity, verdict = found["elasticity"], found["verdict"]
     if verdict == "smooth":
-        derivative = (f"the path is smooth: 1 % more changes the jump by {number(elasticity, 3)} %, by differences of 1 "
-                      "and of 0.5 %")
+        derivative = (f"the path is smooth: 1 % more changes the jump by {number(elasticity, 3)} %, by differences of "
+                      "1 and of 0.5 %")
     elif verdict.startswith("failed"):
         derivative = f"the derivative {verdict}"
     else:
