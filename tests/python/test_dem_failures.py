@@ -176,8 +176,8 @@ def test_failure_of_a_link_names_it_in_its_sentence() -> None:
 
 
 def test_failure_of_a_body_or_of_the_scene() -> None:
-    taken = {**TAKEN, "part": "body", "bodies": (4,), "before": "mass of ", "after": " is nan"}
-    assert described(taken) == {**FIELDS, "joint": "J", "part": "body 4", "cause": "mass of body 4 is nan"}
+    taken = {**TAKEN, "part": "body", "bodies": (4,), "before": "mass: ", "after": " is nan"}
+    assert described(taken) == {**FIELDS, "joint": "J", "part": "body 4", "cause": "mass: body 4 is nan"}
     taken = {**TAKEN, "part": "scene", "bodies": (), "before": "O.dt is 0 s"}
     assert described(taken) == {**FIELDS, "cause": "O.dt is 0 s"}
 

@@ -121,7 +121,7 @@ def test_failed_run_of_the_dem(statejump, cases: Path, fake_yade) -> None:
 def test_missing_yade_says_what_to_do(yade, statejump, cases: Path) -> None:
     outcome = statejump("--json", "dem", cases / "table1.toml", STATEJUMP_YADE="no-such-yade")
     failure = json.loads(outcome.errors)
-    assert failure["kind"] == "failed_run" and failure["remedy"].startswith("install Debian's package 'yade'")
+    assert (failure["kind"], failure["code"]) == ("failed_run", "yade_missing") and "'yade'" in failure["remedy"]
 
 
 def test_results_that_cannot_be_written(statejump, cases: Path, tmp_path: Path) -> None:

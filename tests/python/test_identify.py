@@ -252,7 +252,7 @@ def test_misfit_that_every_cycle_repeats_is_no_evidence() -> None:
     found = sj.identify({"displacement_m": path, "force_N": force}, start="cycled",
                         model=["coulomb", "coulomb_clearance", "coulomb_soft_stops"])
     assert found.model == "coulomb" and found.fit.independent_rows < 100
-    assert any("count 2001 rows as" in note for note in found.notes)
+    assert note("residuals_correlated", rows=2001, independent=found.fit.independent_rows) in found.notes
 
 
 def test_reversed_sign_is_refused() -> None:

@@ -181,7 +181,7 @@ def test_wrong_answers_name_law_joint_and_time(yade: str, monkeypatch: pytest.Mo
     script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
     done = ended([yade, "-n", "-x", script, "wrong"], STATEJUMP_LAWS=str(wrong_law.parent),
                  PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
-    assert f"wrong ({wrong_law}): {complaint} (contact of bodies 0 and 1" in done.stdout, done.stderr
+    assert f"wrong ({wrong_law}): {complaint} (" in done.stdout, done.stderr
 
 
 def mistake(statejump, *arguments: object, **environment: str) -> dict[str, Any]:
@@ -237,15 +237,14 @@ def test_other_kernel_and_two_of_one_name(folder: Path, tmp_path: Path, statejum
     assert 'friction_law = "mindlin"' in text
     case.write_text(text.replace('friction_law = "mindlin"', 'friction_law = "smooth"'))
     environment = {"XDG_DATA_HOME": "/nonexistent"}
-    for laws, reason in (
-        (str(old), f"{stale} was compiled against another version of the kernel, build it again with 'statejump laws "
-                   "build'"),
-        (twice, f"two laws have this name, that of {folder / 'friction_smooth.so'} and that of {stale}"),
-    ):
-        outcome = statejump("reduced", case, STATEJUMP_LAWS=laws, **environment)
-        assert outcome.status == 2 and reason in outcome.errors and outcome.errors.count("\n") == 1, outcome.errors
+    for laws, named in ((str(old), [stale]), (twice, [folder / "friction_smooth.so", stale])):
+        outcome = statejump("--json", "reduced", case, STATEJUMP_LAWS=laws, **environment)
+        assert (outcome.status, outcome.failure) == (2, failure("bad_law", key="joint.friction_law", value="smooth"))
+        reason = outcome.failure["cause"]
+        assert re.findall(r"\S+\.so", reason) == [str(one) for one in named] and "\n" not in reason
+        assert ("'statejump laws build'" in reason) == (laws != twice)
         outcome = statejump("laws", STATEJUMP_LAWS=laws, **environment)
-        assert (outcome.status, outcome.errors) == (2, f"error: law 'smooth': {reason}\n")
+        assert outcome.status == 2 and outcome.errors.startswith("error: ") and outcome.errors.endswith(f"{reason}\n")
         outcome = statejump("reduced", cases / "umbrella_damped.toml", STATEJUMP_LAWS=laws, **environment)
         assert outcome.status == 0, outcome.errors
 

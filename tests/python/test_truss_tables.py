@@ -194,7 +194,7 @@ WRONG = {
     failure("columns_of_one_key", file="node.csv", other="name", column="name", key_of_both="name"): ("name,name\nN0,N0\n", "node"),
     failure("no_column", file="node.csv"): ("", "node"),
     failure("no_row", file="node.csv"): ("name,position_m\n", "node"),
-    failure("bad_cell", file="node.csv", line=3, column="'position_m'", cause="'x' is not a finite number"): (
+    failure("bad_cell", file="node.csv", line=3, column="'position_m'", reason="no_finite_number", cell="x"): (
         "name,position_m\nN0,0 0\nN1,1 x\n", "node"),
     failure("cell_of_other_length", file="node.csv", line=3, column="'position_m'", width=2, numbers=1): (
         "name,position_m\nN0,0 0\nN1,1\n", "node"),

@@ -244,8 +244,8 @@ def test_former_rules_are_told_with_the_numbers_of_the_case() -> None:
 
 
 def test_calm_start_is_not_said_to_ring() -> None:
-    assert " ring." in text_of(all_true())
-    assert " ring." not in text_of(replace(all_true(), rings=False))
+    assert "rest ring." in text_of(all_true())
+    assert "rest ring." not in text_of(replace(all_true(), rings=False))
 
 
 def test_envelope(cases: Path) -> None:

@@ -38,6 +38,11 @@ NOTES: dict[str, str] = {
         "the preload force holds the block at a stop at the start; the stop is rigid in the reduced model, in the DEM "
         "it gives, so that the block slips as its load changes"
     ),
+    "euler_load_exceeded": (
+        "axial force {axial_force_N:.4g} N at a temperature change of {temperature_change_K:.4g} K exceeds the {ends} "
+        "Euler load of an unguided link of square section ({clamped_N:.4g} N clamped-clamped, {pinned_N:.4g} N "
+        "pinned-pinned): the model assumes a guided link"
+    ),
     "clearances_kept": (
         "the reduced model keeps the clearances of the reference temperature; expansion of pad and slot changes them "
         "by up to {change_m:.3g} m in the DEM"

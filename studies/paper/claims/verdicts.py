@@ -218,7 +218,8 @@ def friction_is_the_reason(f: Findings) -> Claim:
     p = one_sided_welch(full, free, rising=False)
     verdict = HOLDS if ratio < NEGLIGIBLE else IN_THE_MEAN if p < SIGNIFICANCE else FAILS
     inertia = {} if f.damped else {
-        "undamped": "nothing else dissipates the energy of the impacts, so the links still move at the end of the cycle"}
+        "undamped": "nothing else dissipates the energy of the impacts, so the links still move at the end of the "
+                    "cycle"}
     if verdict == HOLDS:
         why = because(closed="the curves close without friction")
     elif verdict == IN_THE_MEAN:

@@ -189,7 +189,7 @@ def control(
         for sweep in result.sweeps:
             _find_ranges(case, sweep, wanted)
         _recommend(case, result, wanted)
-    result.remarks += [*reduced.solve(case, np.array([0.0])).warnings, *reduced.warnings(case)]
+    result.remarks += [*reduced.buckling(reduced.solve(case, np.array([0.0]))), *reduced.warnings(case)]
     if with_dem:
         _check_by_dem(case, result, on_progress)
     return result

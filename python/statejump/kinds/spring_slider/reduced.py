@@ -51,6 +51,15 @@ def warnings(case: SpringSliderCase) -> list[str]:
     return said
 
 
+def buckling(path: _engine.SpringSliderPath) -> list[Note]:
+    """Return the warning that the bar would buckle if nothing guided it."""
+    found = path.exceeded_euler_load
+    if found is None:
+        return []
+    ends = "clamped-clamped" if found["axial_force_N"] > found["clamped_N"] else "pinned-pinned"
+    return [Note("euler_load_exceeded", ends=ends, **found)]
+
+
 def solve(case: SpringSliderCase, times_s: np.ndarray | None = None) -> _engine.SpringSliderPath:
     """Return the exact path of a case: segments, events, state jump.
 
@@ -113,7 +122,7 @@ def quick(case: SpringSliderCase) -> Run:
 def _run_at(case: SpringSliderCase, times_s: np.ndarray) -> Run:
     path = solve(case, times_s)
     columns = path.sample(np.asarray(times_s, dtype=float))
-    return result.reduced_run(case, path, columns, (*path.warnings, *warnings(case)),
+    return result.reduced_run(case, path, columns, (*buckling(path), *warnings(case)),
                               lambda times: _run_at(case, times))
 
 
