@@ -194,7 +194,7 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
     elif read.offset_K.any():
         raise MissingKey(f"{section}reference_temperature_K", code="reference_missing", table=read.path.name)
     refuse(read, np.abs(changes) > LARGEST_CHANGE_K,
-           f"is more than {LARGEST_CHANGE_K:g} K away from the stress-free temperature")
+           f"is more than {LARGEST_CHANGE_K:g} K away from the stress-free temperature", "change_too_large")
     changes = np.where(np.abs(changes) < SAME_TEMPERATURE_K, 0.0, changes)
     if lead_in is not None:
         time_s = np.concatenate(([0.0], time_s + float(lead_in)))
