@@ -251,10 +251,9 @@ def test_other_kernel_and_two_of_one_name(folder: Path, tmp_path: Path, statejum
 
 def test_object_that_is_no_law(statejump, tmp_path: Path) -> None:
     (tmp_path / "other.so").write_text("no object")
-    outcome = statejump("laws", STATEJUMP_LAWS=str(tmp_path), XDG_DATA_HOME="/nonexistent")
-    assert outcome.status == 2
-    assert outcome.failure == failure("bad_law")
-    assert outcome.errors.startswith(f"error: {tmp_path / 'other.so'} ")
+    outcome = statejump("--json", "laws", STATEJUMP_LAWS=str(tmp_path), XDG_DATA_HOME="/nonexistent")
+    assert (outcome.status, outcome.failure) == (2, failure("bad_law"))
+    assert outcome.failure["message"].startswith(f"{tmp_path / 'other.so'} ")
 
 
 def test_own_folder(statejump, tmp_path: Path) -> None:
