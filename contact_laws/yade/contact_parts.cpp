@@ -70,15 +70,8 @@ void fail_unstable(Real effective_mass, Real stiffness, const yade::Scene& scene
   std::ostringstream text;
   text.precision(6);
   text << "the time step " << scene.dt << " s is above the stable one, " << stable << " s";
-  record_failure({Failure::Part::contact,
-                  contact.id1,
-                  contact.id2,
-                  text.str(),
-                  "",
-                  scene.time,
-                  stable,
-                  when(scene),
-                  {"time_step_unstable", "O.dt", text_of(scene.dt)}});
+  record_failure(failure(scene, Failure::Part::contact, contact.id1, contact.id2, text.str(), "",
+                         {"time_step_unstable", "O.dt", text_of(scene.dt)}, stable));
 }
 
 }  // namespace statejump::dem

@@ -66,11 +66,32 @@ std::string text_of(const yade::Vector3r& value) {
   return "(" + text_of(value[0]) + ", " + text_of(value[1]) + ", " + text_of(value[2]) + ")";
 }
 
+Failure failure(const yade::Scene& scene, Failure::Part part, int id1, int id2, std::string before,
+                std::string after, FailureDetail detail, yade::Real stable_time_step) {
+  return {part,
+          id1,
+          id2,
+          std::move(before),
+          std::move(after),
+          scene.time,
+          stable_time_step,
+          when(scene),
+          std::move(detail)};
+}
+
+Failure unstable_time_step(const yade::Scene& scene, Failure::Part part, int id1, int id2,
+                           yade::Real stable) {
+  return failure(scene, part, id1, id2,
+                 "the time step " + text_of(scene.dt, 6) + " s is above the stable one of ",
+                 ", " + text_of(stable, 6) + " s",
+                 {"time_step_unstable", "O.dt", text_of(scene.dt)}, stable);
+}
+
 void record_failure(FailureDetail detail, const std::string& sentence, const yade::Scene& scene,
                     const yade::Interaction& contact) {
   if (auto fault = fault_of_contact(scene, contact)) return record_failure(*std::move(fault));
-  record_failure({Failure::Part::contact, contact.id1, contact.id2, sentence, "", scene.time,
-                  std::numeric_limits<yade::Real>::quiet_NaN(), when(scene), std::move(detail)});
+  record_failure(failure(scene, Failure::Part::contact, contact.id1, contact.id2, sentence, "",
+                         std::move(detail)));
 }
 
 void record_failure(Failure failure) {
@@ -121,28 +142,26 @@ boost::python::object take_failure() {
   namespace py = boost::python;
   const std::lock_guard<std::mutex> lock(message_mutex);
   if (!thrown_failure) return py::object();
-  const Failure failure = *std::exchange(thrown_failure, std::nullopt);
+  const Failure taken = *std::exchange(thrown_failure, std::nullopt);
   const char* const parts[] = {"contact",         "link", "torsion_spring",
                                "prismatic_joint", "body", "scene"};
   py::dict result;
-  result["part"] = parts[static_cast<std::size_t>(failure.part)];
+  result["part"] = parts[static_cast<std::size_t>(taken.part)];
   py::list bodies;
-  for (const int id : {failure.id1, failure.id2}) {
+  for (const int id : {taken.id1, taken.id2}) {
     if (id >= 0) bodies.append(id);
   }
   result["bodies"] = py::tuple(bodies);
-  result["before"] = failure.before;
-  result["after"] = failure.after;
-  result["time"] = failure.time;
+  result["before"] = taken.before;
+  result["after"] = taken.after;
+  result["time"] = taken.time;
   result["stable_time_step"] =
-      std::isnan(failure.stable_time_step) ? py::object() : py::object(failure.stable_time_step);
-  const std::string& quantity = failure.detail.quantity;
-  const bool has_article = quantity.compare(0, 4, "the ") == 0;
-  result["code"] = failure.detail.code;
-  result["quantity"] = has_article ? quantity.substr(4) : quantity;
-  result["value"] = failure.detail.value;
-  result["allowed"] = failure.detail.allowed;
-  result["sentence"] = failure.sentence();
+      std::isnan(taken.stable_time_step) ? py::object() : py::object(taken.stable_time_step);
+  result["code"] = taken.detail.code;
+  result["quantity"] = taken.detail.quantity;
+  result["value"] = taken.detail.value;
+  result["allowed"] = taken.detail.allowed;
+  result["sentence"] = taken.sentence();
   return result;
 }
 

@@ -32,7 +32,7 @@ class RaisesFailures {
 // Cause of a failure, for programs. Codes are public and do not change.
 struct FailureDetail {
   const char* code = "failed";
-  std::string quantity = {};  // name as in the sentence, without an article
+  std::string quantity = {};  // without an article
   std::string value = {};
   std::string allowed = {};
 };
@@ -59,6 +59,14 @@ struct Failure {
   FailureDetail detail = {};
   std::string sentence() const;
 };
+
+// A failure of a part at the scene's time and temperatures. `stable_time_step` [s]: see Failure.
+Failure failure(const yade::Scene& scene, Failure::Part part, int id1, int id2, std::string before,
+                std::string after, FailureDetail detail,
+                yade::Real stable_time_step = std::numeric_limits<yade::Real>::quiet_NaN());
+// The failure that O.dt is above the stable time step [s] of a part.
+Failure unstable_time_step(const yade::Scene& scene, Failure::Part part, int id1, int id2,
+                           yade::Real stable);
 
 // Functors call this to record the first failure of a step, which an engine then throws.
 void record_failure(Failure failure);

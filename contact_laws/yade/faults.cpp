@@ -3,8 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -24,18 +22,10 @@ using stepper::ValueRange;
 using Part = Failure::Part;
 using Fault = std::optional<Failure>;
 
-constexpr Real no_step = std::numeric_limits<Real>::quiet_NaN();
-
 // " is nan kg, allowed is above 0"
 template <class Value>
 std::string wrong(const Value& value, const std::string& unit, const std::string& allowed) {
   return " is " + text_of(value) + unit + ", allowed is " + allowed;
-}
-
-Failure failure(const yade::Scene& scene, Part part, int id1, int id2, std::string before,
-                std::string after, FailureDetail detail) {
-  return {part,       id1,     id2,         std::move(before), std::move(after),
-          scene.time, no_step, when(scene), std::move(detail)};
 }
 
 template <class Value>
@@ -44,19 +34,20 @@ FailureDetail not_allowed(const std::string& quantity, const Value& value,
   return {"not_allowed", quantity, text_of(value), allowed};
 }
 
-// Creates a sentence such as "the mass of body 3 is nan kg, allowed is above 0".
+// Creates a sentence such as "the mass of body 3 is nan kg, allowed is above 0" from the name
+// "mass".
 template <class Value>
 Failure of_body(const yade::Scene& scene, int id, const std::string& name, const Value& value,
                 const std::string& unit, const std::string& allowed) {
-  return failure(scene, Part::body, id, -1, name + " of ", wrong(value, unit, allowed),
+  return failure(scene, Part::body, id, -1, "the " + name + " of ", wrong(value, unit, allowed),
                  not_allowed(name, value, allowed));
 }
 
 Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state) {
   const std::array<std::pair<const char*, const Vector3r*>, 3> vectors = {
-      {{"the position", &state.se3.position},
-       {"the velocity", &state.vel},
-       {"the angular velocity", &state.angVel}}};
+      {{"position", &state.se3.position},
+       {"velocity", &state.vel},
+       {"angular velocity", &state.angVel}}};
   const std::array<const char*, 3> units = {" m", " m/s", " rad/s"};
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     const auto& [name, value] = vectors[i];
@@ -66,7 +57,7 @@ Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state
   }
   const Real norm = state.se3.orientation.norm();
   if (!(norm > 0) || !std::isfinite(norm)) {
-    return of_body(scene, id, "the norm of the orientation", norm, "", "above 0");
+    return of_body(scene, id, "norm of the orientation", norm, "", "above 0");
   }
   return std::nullopt;
 }
@@ -78,14 +69,13 @@ Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& stat
   const bool moves = (state.blockedDOFs & translations) != translations;
   const ValueRange mass = moves ? ValueRange::positive : ValueRange::not_negative;
   if (!allows(mass, state.mass)) {
-    return of_body(scene, id, "the mass", state.mass, " kg", range_text(mass));
+    return of_body(scene, id, "mass", state.mass, " kg", range_text(mass));
   }
   for (int i = 0; i < 3; ++i) {
     const bool turns = (state.blockedDOFs & (8u << i)) == 0;
     const ValueRange inertia = turns ? ValueRange::positive : ValueRange::not_negative;
     if (!allows(inertia, state.inertia[i])) {
-      return of_body(scene, id, "the moment of inertia", state.inertia, " kg m2",
-                     range_text(inertia));
+      return of_body(scene, id, "moment of inertia", state.inertia, " kg m2", range_text(inertia));
     }
   }
   return std::nullopt;
@@ -97,12 +87,11 @@ Fault fault_of_forces(const yade::Scene& scene, int id) {
   if (forces.lastReset != scene.iter || !forces.getPermForceUsed()) return std::nullopt;
   const Vector3r& force = forces.getPermForce(id);
   if (!stepper::is_finite(force)) {
-    return of_body(scene, id, "the permanent force", force, " N", range_text(ValueRange::finite));
+    return of_body(scene, id, "permanent force", force, " N", range_text(ValueRange::finite));
   }
   const Vector3r& torque = forces.getPermTorque(id);
   if (!stepper::is_finite(torque)) {
-    return of_body(scene, id, "the permanent torque", torque, " N m",
-                   range_text(ValueRange::finite));
+    return of_body(scene, id, "permanent torque", torque, " N m", range_text(ValueRange::finite));
   }
   return std::nullopt;
 }
@@ -117,13 +106,15 @@ Fault fault_of_body(const yade::Scene& scene, int id) {
   if (Fault fault = fault_of_motion(scene, id, state)) return fault;
   if (const auto* material = known_cast<const ThermalFrictMat>(body.material.get())) {
     if (const auto fault = fault_of(*material)) {
-      return of_body(scene, id, std::string(ThermalFrictMat::class_name) + "." + fault->attribute,
-                     fault->value, "", fault->allowed);
+      const std::string name = std::string(ThermalFrictMat::class_name) + "." + fault->attribute;
+      return failure(scene, Part::body, id, -1, name + " of ",
+                     wrong(fault->value, "", fault->allowed),
+                     not_allowed(name, fault->value, fault->allowed));
     }
   }
   if (const auto* shape = known_cast<const ThermalShape>(body.shape.get())) {
     if (!stepper::is_strain(shape->thermalStrain)) {
-      return of_body(scene, id, "the thermal strain", shape->thermalStrain, "", "above -1");
+      return of_body(scene, id, "thermal strain", shape->thermalStrain, "", "above -1");
     }
   }
   return std::nullopt;
@@ -326,7 +317,7 @@ void fail_answer(Real stiffness, const Vector3r& force, const yade::Scene& scene
 
 void fail_force(const yade::Scene& scene, int id, const Vector3r& force) {
   if (Fault fault = fault_of_body(scene, id)) throw_failure(*std::move(fault));
-  throw_failure(of_body(scene, id, "the force", force, " N", range_text(ValueRange::finite)));
+  throw_failure(of_body(scene, id, "force", force, " N", range_text(ValueRange::finite)));
 }
 
 }  // namespace statejump::dem

@@ -2,8 +2,6 @@
 #include "prismatic.hpp"
 
 #include <cmath>
-#include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -24,13 +22,18 @@ const std::string prismatic_elastic = "prismaticElastic";
 const std::string prismatic_friction = "prismaticFriction";
 const std::string prismatic_damping = "prismaticDamping";
 
+constexpr auto part = Failure::Part::prismatic_joint;
+
 [[noreturn, gnu::cold]] void fail(const yade::Scene& scene, const PrismaticJoint& joint,
-                                  const FailureDetail& detail, const std::string& before,
-                                  const std::string& after, Real stable) {
+                                  Failure failure) {
   // If a number of the joint or of its bodies is invalid, it is the cause and is reported instead.
   if (auto fault = fault_of_prismatic(scene, joint)) throw_failure(*std::move(fault));
-  throw_failure({Failure::Part::prismatic_joint, joint.id1, joint.id2, before, after, scene.time,
-                 stable, when(scene), detail});
+  throw_failure(std::move(failure));
+}
+
+[[noreturn, gnu::cold]] void fail(const yade::Scene& scene, const PrismaticJoint& joint,
+                                  const FailureDetail& detail, const std::string& before) {
+  fail(scene, joint, failure(scene, part, joint.id1, joint.id2, before, "", detail));
 }
 
 }  // namespace
@@ -59,10 +62,9 @@ void PrismaticJoints::act(PrismaticJoint& joint) {
   if (joint.id1 == joint.id2) {
     refuse({"same_body", "PrismaticJoint.id2", std::to_string(joint.id2), "id1"});
   }
-  constexpr Real no_step = std::numeric_limits<Real>::quiet_NaN();
   if (stepper::has_friction_without_stiffness(joint) ||
       stepper::has_stop_without_stiffness(joint)) {
-    fail(*scene, joint, {"stiffness_missing"}, "a stiffness is missing of ", "", no_step);
+    fail(*scene, joint, {"stiffness_missing"}, "a stiffness is missing of ");
   }
   const Real inverse = inverse_mass(one) + inverse_mass(two);
   const stepper::PrismaticStep step = stepper::prismatic_step(
@@ -70,12 +72,10 @@ void PrismaticJoints::act(PrismaticJoint& joint) {
       {one.se3.position - two.se3.position, one.vel - two.vel, inverse > 0 ? 1 / inverse : 0},
       scene->dt);
   if (!(scene->dt <= step.largest_step)) {
-    fail(*scene, joint, {"time_step_unstable", "O.dt", text_of(scene->dt)},
-         "the time step " + text_of(scene->dt, 6) + " s is above the stable one of ",
-         ", " + text_of(step.largest_step, 6) + " s", step.largest_step);
+    fail(*scene, joint, unstable_time_step(*scene, part, joint.id1, joint.id2, step.largest_step));
   }
   if (!stepper::is_finite_fast(step.force)) {
-    fail(*scene, joint, {"not_finite", "force"}, "the force is not finite of ", "", no_step);
+    fail(*scene, joint, {"not_finite", "force"}, "the force is not finite of ");
   }
   scene->forces.addForce(joint.id1, step.force);
   scene->forces.addForce(joint.id2, -step.force);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermal.hpp"
 
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -34,20 +33,7 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
 [[gnu::cold, gnu::noinline]] void refuse_time_step(const yade::Scene& scene,
                                                    const ThermalLink& link, Real stable) {
   throw_fault(scene, link);
-  std::ostringstream before, after;
-  before.precision(6);
-  after.precision(6);
-  before << "the time step " << scene.dt << " s is above the stable one of ";
-  after << ", " << stable << " s";
-  throw_failure({Failure::Part::link,
-                 link.id1,
-                 link.id2,
-                 before.str(),
-                 after.str(),
-                 scene.time,
-                 stable,
-                 when(scene),
-                 {"time_step_unstable", "O.dt", text_of(scene.dt)}});
+  throw_failure(unstable_time_step(scene, Failure::Part::link, link.id1, link.id2, stable));
 }
 
 // Throws because the ends coincide or their distance is not finite.
@@ -56,15 +42,8 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
   throw_fault(scene, link);
   const char* const what =
       length == 0 ? "the two ends coincide of " : "the positions have no finite distance of ";
-  throw_failure({Failure::Part::link,
-                 link.id1,
-                 link.id2,
-                 what,
-                 "",
-                 scene.time,
-                 std::numeric_limits<Real>::quiet_NaN(),
-                 when(scene),
-                 {length == 0 ? "ends_coincide" : "distance_not_finite"}});
+  throw_failure(failure(scene, Failure::Part::link, link.id1, link.id2, what, "",
+                        {length == 0 ? "ends_coincide" : "distance_not_finite"}));
 }
 
 // Throws the failure that the stress-free length at this temperature is not positive or the force
@@ -84,8 +63,7 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
            << " m, allowed is above 0, with thermalExpansion " << link.thermalExpansion
            << " 1/K of ";
   }
-  throw_failure({Failure::Part::link, link.id1, link.id2, before.str(), "", scene.time,
-                 std::numeric_limits<Real>::quiet_NaN(), when(scene), detail});
+  throw_failure(failure(scene, Failure::Part::link, link.id1, link.id2, before.str(), "", detail));
 }
 
 }  // namespace

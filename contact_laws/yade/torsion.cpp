@@ -2,7 +2,6 @@
 #include "torsion.hpp"
 
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -35,15 +34,8 @@ void require_planar(const yade::Scene& scene, const ThermalLink& link, const ste
                                       : " leaves the plane across the axis, component of its "
                                         "direction along it ")
         << span.direction.dot(axis) << ", allowed is at most " << stepper::largest_tilt;
-  throw_failure({Failure::Part::link,
-                 link.id1,
-                 link.id2,
-                 "TorsionSpring: ",
-                 after.str(),
-                 scene.time,
-                 std::numeric_limits<Real>::quiet_NaN(),
-                 when(scene),
-                 {"leaves_plane"}});
+  throw_failure(failure(scene, Failure::Part::link, link.id1, link.id2,
+                        "TorsionSpring: ", after.str(), {"leaves_plane"}));
 }
 
 }  // namespace
@@ -80,34 +72,16 @@ void TorsionSprings::act(TorsionSpring& spring) {
     const Real stable = kernel::critical_time_step(1 / inverse, stepper::largest_stiffness(spring));
     if (!(scene->dt <= stable)) {
       throw_fault(*scene, spring);
-      std::ostringstream before, after;
-      before.precision(6);
-      after.precision(6);
-      before << "the time step " << scene->dt << " s is above the stable one of ";
-      after << ", " << stable << " s";
-      throw_failure({Failure::Part::torsion_spring,
-                     spring.link1->id2,
-                     spring.link2->id2,
-                     before.str(),
-                     after.str(),
-                     scene->time,
-                     stable,
-                     when(*scene),
-                     {"time_step_unstable", "O.dt", text_of(scene->dt)}});
+      throw_failure(unstable_time_step(*scene, Failure::Part::torsion_spring, spring.link1->id2,
+                                       spring.link2->id2, stable));
     }
   }
 
   if (!std::isfinite(spring.moment)) {
     throw_fault(*scene, spring);
-    throw_failure({Failure::Part::torsion_spring,
-                   spring.link1->id2,
-                   spring.link2->id2,
-                   "the moment is not finite of ",
-                   "",
-                   scene->time,
-                   std::numeric_limits<Real>::quiet_NaN(),
-                   when(*scene),
-                   {"not_finite", "moment"}});
+    throw_failure(failure(*scene, Failure::Part::torsion_spring, spring.link1->id2,
+                          spring.link2->id2, "the moment is not finite of ", "",
+                          {"not_finite", "moment"}));
   }
   const auto add_couple = [&](const ThermalLink& link, const LinkEnds& ends, Real moment) {
     const Vector3r force = stepper::couple(ends.span, spring.axis, moment);

@@ -20,8 +20,7 @@ py::object attribute_of_more(const std::string& engine, const std::string& name)
     } catch (py::error_already_set& failed) {
       if (!failed.matches(PyExc_ModuleNotFoundError)) throw;
       const py::object error = py::module_::import("statejump.core.errors").attr("StatejumpError");
-      const py::object missing = error("engine", py::arg("cause") = name + " is not in this build",
-                                       py::arg("remedy") = "run make build");
+      const py::object missing = error(py::arg("code") = "not_in_build", py::arg("name") = name);
       PyErr_SetObject(error.ptr(), missing.ptr());
       throw py::error_already_set();
     }

@@ -191,8 +191,19 @@ void bind_path(py::module_& module) {
                              "Displacement at the end minus that at the start [m].")
       .def("jump_after_cycle", &spring_slider::Path::jump_after_cycle, py::arg("cycle"),
            "Displacement [m] at the end of a cycle, counted from 1, minus that at the start.")
-      .def_property_readonly("warnings", &spring_slider::warnings,
-                             "Sentences on the limits of the model that this path leaves.")
+      .def_property_readonly(
+          "exceeded_euler_load",
+          [](const spring_slider::Path& self) -> py::object {
+            const auto found = spring_slider::exceeded_euler_load(self);
+            if (!found) return py::none();
+            return py::dict(py::arg("axial_force_N") = found->axial_force,
+                            py::arg("temperature_change_K") = found->temperature_change,
+                            py::arg("clamped_N") = found->clamped,
+                            py::arg("pinned_N") = found->pinned);
+          },
+          "Dict: axial_force_N, the largest compression, if it is above the Euler "
+          "load of an unguided link; temperature_change_K; clamped_N and pinned_N, "
+          "the Euler loads. Else None.")
       .def(
           "sample",
           [](const spring_slider::Path& self, const Eigen::VectorXd& time_s) {

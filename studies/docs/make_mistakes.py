@@ -191,6 +191,7 @@ def table() -> str:
             lines += _rows("Runs in YADE", RUNS)
             lines += _as_json()
             lines += _codes()
+            lines += _notes()
             lines += _reasons_of_meshes()
         finally:
             os.chdir(here)
@@ -240,6 +241,17 @@ def _codes() -> list[str]:
         if declared.further:
             sentence += f" (details: {', '.join(declared.further)})"
         lines.append(f"| `{code}` | {_cell(sentence if declared.text == '' else f'({declared.text})')} |")
+    return [*lines, ""]
+
+
+def _notes() -> list[str]:
+    """Return the code of every note with its sentence."""
+    from statejump.core.notes import NOTES
+
+    lines = ["## Notes\n\nWarnings of runs, remarks of studies and notes of identification are texts with a `code` and "
+             "`details` (`statejump.core.notes.Note`). Names in braces are `details`. Files keep the text only.\n\n"
+             "| code | sentence |\n|---|---|"]
+    lines += [f"| `{code}` | {_cell(sentence)} |" for code, sentence in sorted(NOTES.items())]
     return [*lines, ""]
 
 

@@ -42,14 +42,13 @@ def test_unknown_build_identifiers_stop_the_build_and_name_the_command(project: 
     done = configure(project)
     said = " ".join(done.stderr.split())
     assert done.returncode != 0
-    assert "is none of the known binaries" in said
     assert f"scripts/measure_yade {FOLDER}" in said and "-DSTATEJUMP_MEASURE_YADE=ON" in said
 
 
 def test_a_measured_interface_is_accepted_on_request(project: Path):
     done = configure(project, "-DSTATEJUMP_MEASURE_YADE=ON")
     assert done.returncode == 0, done.stderr
-    assert f"measured on this machine, interface variant {VARIANT}" in done.stdout
+    assert f"interface variant {VARIANT}" in done.stdout
     table = (project / "build" / "yade_abi" / "statejump" / "yade_abi" / "known_binaries.inc").read_text()
     rows = [line for line in table.splitlines() if line.startswith("    {")]
     assert f"built_for_row = {len(rows) - 1};" in table
@@ -62,7 +61,8 @@ def test_another_interface_is_refused_on_request_too(project: Path):
         path.write_text(path.read_text().replace("State,vel,144,", "State,vel,152,"))
     done = configure(project, "-DSTATEJUMP_MEASURE_YADE=ON")
     assert done.returncode != 0
-    assert "is none of the known ones" in " ".join(done.stderr.split())
+    said = " ".join(done.stderr.split())
+    assert f"scripts/measure_yade {FOLDER}" in said and "-DSTATEJUMP_MEASURE_YADE" not in said
 
 
 def test_missing_yade_is_one_sentence(project: Path):

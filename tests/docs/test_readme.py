@@ -48,7 +48,7 @@ assert result.passed, result
 assert abs(run.summary["state_jump_m"] - 20 * 0.5 / (70e9 * 9e-6)) < 1e-15  # f l0/(E A), f = 0.2 * 100 N
 import matplotlib
 assert matplotlib.get_backend().lower() == "svg", matplotlib.get_backend()
-print("the block ran")
+print("block_ran")
 """
 
 
@@ -64,7 +64,7 @@ def test_ten_lines_of_python(tmp_path: Path) -> None:
     subprocess.run([os.environ["STATEJUMP_COMMAND"], "compare", "cases/table1.toml", "--quiet"], cwd=tmp_path,
                    check=True, timeout=300)
     python(MAKE_BORE)
-    assert "the block ran" in python(block("From Python") + CHECK)
+    assert "block_ran" in python(block("From Python") + CHECK)
 
 
 def test_the_same_lines_stand_in_the_tutorial() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Expected errors in tests, as codes and fields. Only the test of the generated page compares message texts."""
+"""Expected errors and notes in tests, as codes and fields. Only the test of the generated page compares message texts."""
 from __future__ import annotations
 
 import json
@@ -12,6 +12,7 @@ import pytest
 
 from statejump import _engine
 from statejump.core.errors import StatejumpError
+from statejump.core.notes import Note
 
 # Values of details are copied from the input, or result from a few double-precision operations with errors of 1e-16.
 # The tolerance is relative, so the scale does not matter.
@@ -19,8 +20,8 @@ ROUNDING = 1e-12
 
 
 class Failure:
-    """Code and fields of an expected error. It equals every error with these values, from the package, from the engine
-    or as JSON; an error may have further fields."""
+    """Code and fields of an expected error or note. It equals every error with these values, from the package, from the
+    engine or as JSON, and every such note; both may have further fields."""
 
     def __init__(self, code: str, **fields: Any) -> None:
         self.code, self.fields = code, fields
@@ -33,6 +34,12 @@ class Failure:
     def __eq__(self, error: object) -> bool:
         if isinstance(error, Failure):
             return (self.code, self.fields) == (error.code, error.fields)
+        if isinstance(error, Note):
+            self._found = f" not {error.code}: {error!r}, {error.details}"
+            return error.code == self.code and all(
+                name in error.details and _same(wanted, error.details[name], name) for name, wanted in self.fields.items())
+        if isinstance(error, str) and not error.startswith("{"):
+            return False  # a sentence without a code
         if isinstance(error, str):
             error = json.loads(error)  # one line of --json
         self._found = f" not {_shown(error)}"
@@ -56,7 +63,7 @@ class Failure:
         return f"failure({self.code!r}, {self.fields}){self._found}"
 
 
-failure = Failure
+failure = note = Failure
 
 
 def _shown(error: object) -> str:

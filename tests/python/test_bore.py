@@ -88,11 +88,15 @@ def test_command_writes_table_and_picture(tmp_path: Path):
     assert sorted(p.name for p in folder.iterdir()) == ["bore.csv", "roundness.png", "roundness.svg"]
     with (folder / "bore.csv").open() as stream:
         values = {row["quantity"]: row["value"] for row in csv.DictReader(stream)}
-    assert values["body"] == "closed ring"
-    assert values["lobes that dominate"] == "3"
-    assert float(values["harmonic 3, middle section: amplitude"]) == pytest.approx(1e-5, abs=1e-9)
-    assert float(values["radial clearance, least squares"]) == pytest.approx(1e-4, abs=2e-8)
-    assert float(values["radial clearance, smallest, journal on the axis"]) < 9e-5
+
+    def value(*parts: str) -> str:
+        found, = [value for quantity, value in values.items() if all(part in quantity for part in parts)]
+        return found
+
+    assert values["body"] == "closed ring" and value("lobes") == "3"
+    assert float(value("harmonic 3", "amplitude")) == pytest.approx(1e-5, abs=1e-9)
+    assert float(value("clearance", "least squares")) == pytest.approx(1e-4, abs=2e-8)
+    assert float(value("clearance", "smallest")) < 9e-5
     first = (folder / "roundness.svg").read_bytes()
     assert run(tmp_path, file, "--scale", "0.001", "--journal-radius", JOURNAL).exit_code == 0
     assert (folder / "roundness.svg").read_bytes() == first
@@ -187,7 +191,7 @@ def test_in_python(tmp_path: Path):
     figure = worn.plot()
     assert [len(axes.patches) for axes in figure.axes] == [0, len(bore.HARMONICS)]
     assert worn.plot(tuple(figure.axes)) is figure
-    assert "lobes that dominate" in worn._repr_html_() and "0.00510001 m" in repr(worn)
+    assert "dominate" in worn._repr_html_() and "0.00510001 m" in repr(worn)
     with failing("not_positive", key="journal_radius_m", value=0, unit="m"):
         sj.bore(file, unit_m=1e-3, journal_radius_m=0)
     # The remedy names the argument of the function, not the option of the command.

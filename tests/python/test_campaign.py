@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 
 from conftest import BUILT, REPOSITORY, Outcome
-from failures import Failure, failing, failure
+from failures import Failure, failing, failure, note
 
 import statejump as sj
 from statejump.campaign import distribute, execute, journal, summary, tables, work
@@ -29,6 +29,7 @@ from statejump.campaign.campaign_file import load_campaign
 from statejump.campaign.plan import MONTECARLO, SWEEP, Plan
 from statejump.campaign.sampling import Distribution, Values, montecarlo_values, sweep_values
 from statejump.campaign.yade_batch import write_table
+from statejump.core.notes import Note
 from statejump.core.errors import StatejumpError
 
 # Like the launcher, without a main guard, so that processes that import it would run it again.
@@ -181,7 +182,7 @@ def test_grid_of_a_sweep(tmp_path: Path, cases: Path) -> None:
 # Sentences.
 
 MISTAKES = {
-    "no such case": (("table1.toml", "tabel1.toml"), failure("case_file_not_found", file="tabel1.toml")),
+    "absent case": (("table1.toml", "tabel1.toml"), failure("case_file_not_found", file="tabel1.toml")),
     "unknown section": (("[campaign]", "[campain]"), failure("misspelt_key", key="campain", meant="[campaign]")),
     "unknown table": (("[[vary]]", "[[vari]]"), failure("misspelt_key", key="vari", meant="[[vary]]")),
     "unknown key": (("samples =", "sampels ="), failure("misspelt_key", key="campaign.sampels", meant="campaign.samples")),
@@ -235,7 +236,7 @@ def test_mistake_in_the_campaign_file(write: Callable[..., Path], mistake: str) 
     with pytest.raises(StatejumpError) as caught:
         load_campaign(path, MONTECARLO)
     assert caught.value == sentence and "\n" not in str(caught.value)
-    assert mistake == "no such case" or caught.value == sentence.at(file=path)
+    assert mistake == "absent case" or caught.value == sentence.at(file=path)
 
 
 @pytest.mark.parametrize("text, sentence", [
@@ -318,7 +319,7 @@ def test_unforeseen_error_of_one_sample(write: Callable[..., Path], monkeypatch:
         raise ZeroDivisionError("a\nb")
 
     monkeypatch.setattr(work, "outcome", broken)
-    assert work.run_sample(campaign, 0).error == "the run failed: ZeroDivisionError: a b"
+    assert work.run_sample(campaign, 0).error == note("sample_failed", error="ZeroDivisionError", text="a b")
 
 
 def test_sample_that_kills_its_worker(
@@ -330,7 +331,7 @@ def test_sample_that_kills_its_worker(
     monkeypatch.setenv("STATEJUMP_YADE", fake_yade("kill -9 $PPID\n"))
     campaign = load_campaign(write(model="dem", samples=1), MONTECARLO)
     finish(campaign, tmp_path / "trial")
-    assert rows_of(tmp_path / "trial")[0]["error"] == "the run ended its worker process, time and again"
+    assert rows_of(tmp_path / "trial")[0]["error"] == Note("worker_ended")
 
 
 # In Python.
@@ -374,7 +375,7 @@ def test_montecarlo_in_python_is_that_of_a_file(tmp_path: Path, cases: Path, wri
     assert "failed: " in campaign._repr_html_()
     for name in ("distributions", "correlations"):
         assert campaign.plot(name).axes
-    with pytest.raises(ValueError, match="must be 'distributions' or 'correlations'"):
+    with pytest.raises(ValueError, match="'correlations'"):
         campaign.plot("sweep")
 
 
@@ -596,7 +597,7 @@ def test_damaged_journal(tmp_path: Path, write: Callable[..., Path]) -> None:
             assert line <= 3
         else:
             with journal.Journal(tmp_path, campaign, restart=False) as kept:
-                assert kept.finished == {0, 1} and "was torn and is cut off" in kept.note
+                assert kept.finished == {0, 1} and kept.note == note("journal_torn", path=path)
             assert path.read_bytes() == whole[:last]
     for end in range(last + 1, len(whole)):
         path.write_bytes(whole[:end])

@@ -199,9 +199,9 @@ def test_checks_of_the_joint_of_a_rib() -> None:
 def test_a_law_that_cannot_be_used(monkeypatch: pytest.MonkeyPatch) -> None:
     for kind, key in (("normal", "normal_law"), ("dissipation", "dissipation_law"), ("friction", "friction_law"),
                       ("tangential_velocity", "tangential_velocity")):
-        monkeypatch.setattr(_engine, "law_problem", lambda asked, name: "it is of another version" if asked == kind else "")
+        monkeypatch.setattr(_engine, "law_problem", lambda asked, name: "older version" if asked == kind else "")
         assert refused("umbrella_damped") == (
-            failure("bad_law", key=f"joint.{key}", value=DOCUMENTS["umbrella_damped"]["joint"][key], cause="it is of another version"))
+            failure("bad_law", key=f"joint.{key}", value=DOCUMENTS["umbrella_damped"]["joint"][key], cause="older version"))
 
 
 def test_checks_of_the_start_of_a_rib() -> None:

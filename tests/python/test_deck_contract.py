@@ -38,11 +38,11 @@ def test_no_field_is_in_no_class(name: str) -> None:
 
 def test_a_field_in_two_classes_or_in_none_is_found() -> None:
     for wrong in ({"idle": {"A": "why"}, "refused": {"A": "why"}}, {"idle": {"B": "why"}}):
-        with pytest.raises(ValueError, match="is in no class or in two"):
+        with pytest.raises(ValueError, match="field [AB] "):
             used("CARD", "node", "ID A", **wrong)
-    with pytest.raises(ValueError, match="two fields of one name"):
+    with pytest.raises(ValueError, match="two fields"):
         used("CARD", "node", "ID ID")
-    with pytest.raises(ValueError, match="CARD is in two classes"):
+    with pytest.raises(ValueError, match="two classes"):
         table(idle("CARD", "why"), refused("CARD", "why"))
 
 

@@ -62,9 +62,9 @@ def test_inches_and_pounds(tmp_path: Path, statejump: Callable[..., Outcome]) ->
 
 
 @pytest.mark.parametrize("numbers, sentence", [
-    (MILLIMETRES, "hint: Young's modulus: 2e+05 Pa is implausible; --units mm-N"),
+    (MILLIMETRES, "2e+05 Pa "),
     ({**MILLIMETRES, "modulus": "2.+11", "area": "1.-4", "density": "7850."}, ""),
-    ({**MILLIMETRES, "area": "50."}, "hint: cross-section area: 50 m2 is implausible"),
+    ({**MILLIMETRES, "area": "50."}, "area: 50 m2 "),
 ])
 def test_implausible_numbers_are_hinted_at(numbers: dict[str, str], sentence: str, tmp_path: Path,
                                            statejump: Callable[..., Outcome]) -> None:
@@ -78,6 +78,7 @@ def test_implausible_numbers_are_hinted_at(numbers: dict[str, str], sentence: st
 def test_numbers_out_of_range_name_the_option(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
     (tmp_path / "rod.bdf").write_text(DECK.format(**{**MILLIMETRES, "area": "500."}))
     told = statejump("truss", "import", "rod.bdf", "-o", "rod.toml")
-    assert (told.status, told.failure) == (2, failure("out_of_range", remedy="--units mm-N, mm-kN-t, mm-kg-s or in-lbf names the units of the deck"))
+    assert (told.status, told.failure) == (2, failure("out_of_range"))
+    assert told.failure.remedy.startswith("--units mm-N")
     told = statejump("truss", "import", "rod.bdf", "-o", "rod.toml", "--units", "mm-N", "--length-unit", "0.001")
     assert (told.status, told.failure) == (2, failure("units_given_twice", key="--length-unit", value=0.001, system="mm-N"))

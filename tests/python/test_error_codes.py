@@ -11,8 +11,10 @@ from pathlib import Path
 import pytest
 
 from conftest import REPOSITORY
+from failures import note
 from statejump.core import errors
 from statejump.core.error_codes import CODES, Code
+from statejump.core.notes import NOTES, Note
 from statejump.kinds.truss.importing.reasons import REASONS
 
 PACKAGE = REPOSITORY / "python" / "statejump"
@@ -113,11 +115,34 @@ def test_every_declared_code_is_used() -> None:
              for node in ast.walk(tree) if isinstance(node, ast.Constant)}
     from_engine = {text for path in (REPOSITORY / "engine" / "src" / "failure.cpp",
                                      REPOSITORY / "geometry" / "include" / "statejump" / "geometry" / "mesh_failure.hpp")
-                   for text in path.read_text(encoding="utf-8").split('"')}
+                   for text in path.read_text(encoding="utf-8").split('"')} | {"not_in_build"}  # bindings/module.cpp
     from_studies = {text for path in (REPOSITORY / "studies").rglob("*.py")
                     for text in path.read_text(encoding="utf-8").split('"')}
     used = texts | from_engine | from_studies | {"out_of_range"}
     assert not [code for code in CODES if code not in used and code.removeprefix("bore_") not in used]
+
+
+def test_every_note_is_used_with_the_details_of_its_sentence() -> None:
+    texts = {node.value for path, tree in TREES if path.name != "notes.py" or path.parent.name != "core"
+             for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+    assert [code for code in NOTES if code not in texts] == []
+    for path, tree in TREES:
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and called(node) == "Note" and isinstance(node.args[0], ast.Constant):
+                names = {name for _, name, _, _ in string.Formatter().parse(NOTES[node.args[0].value]) if name}
+                words = {word.arg for word in node.keywords}
+                assert names <= words or None in words, f"{path.relative_to(PACKAGE)}:{node.lineno}: {names - words}"
+
+
+def test_a_note_is_a_sentence_with_code_and_details() -> None:
+    for one in (Note("cycles_left_out", shown=10, cycles=20_000),
+                pickle.loads(pickle.dumps(Note("cycles_left_out", shown=10, cycles=20_000)))):
+        assert isinstance(one, str) and one == NOTES["cycles_left_out"].format(shown=10, cycles=20_000)
+        assert one == note("cycles_left_out", cycles=20_000) and one.details == {"shown": 10, "cycles": 20_000}
+        assert one != note("cycles_left_out", cycles=20_001) and one != note("clearances_kept")
+    assert str(Note("clearances_kept", change_m=1.0)) != note("clearances_kept")  # a text without code
+    with pytest.raises(KeyError):
+        Note("no_such_code")
 
 
 @pytest.mark.parametrize("code", CODES)
@@ -133,8 +158,8 @@ def test_code_and_details_reach_programs(tmp_path: Path) -> None:
     error = errors.NotAllowed("joint.play_m", 0.1, code="no_radius_left", part="journal", at_K=-1000.0)
     for one in (error, pickle.loads(pickle.dumps(error))):
         assert (one.code, one.details) == ("no_radius_left", {"part": "journal", "at_K": -1000.0})
-        assert str(one) == ("joint.play_m = 0.1 is not allowed: the journal has no radius left at a temperature change of "
-                            "-1000 K")
+        cause = CODES["no_radius_left"].cause.format(part="journal", at_K=-1000.0)
+        assert str(one) == f"joint.play_m = 0.1 is not allowed: {cause}"
         assert one.fields()["code"] == "no_radius_left" and one.fields()["details"] == {"part": "journal", "at_K": -1000.0}
     assert errors.NotAllowed("a", tmp_path).code == "not_allowed"
     assert errors.StatejumpError(code="several_values", path=tmp_path).fields()["details"] == {"path": str(tmp_path)}

@@ -2,6 +2,7 @@
 """Frictional contact problems along paths of trusses: their solutions reproduce the path."""
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -92,11 +93,11 @@ def test_command(statejump: Callable[..., Outcome], cases: Path, tmp_path: Path)
     case = cases / "trusses" / "chain_10.toml"
     done = statejump("fclib", "write", case, "--number", 5)
     assert done.status == 0, done.errors
-    assert "5 problems of 10 contacts at most" in done.output
+    assert re.findall(r"(\d+) (?:problems|contacts)", done.output) == ["5", "10"]
     files = sorted((tmp_path / "results" / "chain_10" / "fclib").glob("*.hdf5"))
     assert [file.name for file in files] == [f"step_{k}.hdf5" for k in range(1, 6)]
     solved = statejump("fclib", "solve", files[2])
-    assert solved.status == 0 and "stored solution: merit" in solved.output, solved.errors
+    assert solved.status == 0 and "merit" in solved.output, solved.errors
 
 
 @pytest.mark.parametrize("arguments, sentence", [

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from conftest import BUILT, COMMAND, REPOSITORY
+from failures import failure
 from statejump import _paths
 
 
@@ -34,7 +35,7 @@ def test_commands_of_a_group_have_whole_sentences(statejump: Callable[..., Any])
 ])
 def test_misspelt_command_is_told_the_nearest(statejump: Callable[..., Any], words: tuple[str, ...], meant: str) -> None:
     done = statejump(*words)
-    assert done.status == 2 and f"Did you mean '{meant}'?" in done.errors, done.errors
+    assert done.status == 2 and f"'{meant}'?" in done.errors, done.errors
     assert done.errors.count("\n") == 1
 
 
@@ -44,7 +45,7 @@ def test_another_python_is_told_which_one_it_takes() -> None:
             "try:\n    import statejump\nexcept ImportError as error:\n    print(error)")
     done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(BUILT)},
                           capture_output=True, text=True, timeout=60, check=True)
-    assert done.stdout.startswith(f"statejump was built for {_paths.PYTHON}") and done.stdout.endswith("(3.99)\n")
+    assert done.stdout.startswith("statejump") and str(_paths.PYTHON) in done.stdout and done.stdout.endswith("(3.99)\n")
 
 
 def test_manual_and_completion_are_of_the_commands(tmp_path: Path) -> None:
@@ -69,12 +70,12 @@ def test_demo_refuses_other_models_in_one_sentence(statejump: Callable[..., Any]
     assert statejump("reduced", "table1").status == 0
     refused = statejump("reduced", "umbrella_damped")
     assert refused.status == 2 and refused.errors.count("\n") == 1
-    assert "is not in this build; run make build" in refused.errors
+    assert refused.failure == failure("not_in_build")
 
 
 def test_engine_has_the_names_of_both_modules() -> None:
     from statejump import _engine
 
     assert _engine.truss_joints() and _engine.BoreMesh.read
-    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+    with pytest.raises(AttributeError, match="'nothing'"):
         _engine.nothing

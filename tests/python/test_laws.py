@@ -85,7 +85,7 @@ def test_parameters_are_those_of_the_cases() -> None:
 
 
 def test_unstatic_law() -> None:
-    with pytest.raises(ValueError, match="friction_law = 'mindlyn', allowed is one of none, ambrosio, mindlin"):
+    with failing("unknown_name", raised=ValueError, key="friction_law", value="mindlyn", allowed=laws.names("friction")):
         laws.law("friction", "mindlyn")
 
 

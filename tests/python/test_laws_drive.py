@@ -2,6 +2,8 @@
 """Laws of one contact along a displacement path, from Python and from the command line."""
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +94,7 @@ def test_every_law(kind: str) -> None:
     ("flores", {"time_s": [0, 1, 1, 2]}, failure("history_times_not_increasing", item="row 3", key="time_s", value=1.0)),
     ("flores", {"time_s": [0, 1, 2, 3], "penetration_depth_m": None, "normal_force_N": [1.0] * 4},
      failure("law_needs_penetration", key="normal_force_N", law="flores")),
-    ("johnson", {}, failure("law_argument_out_of_range", key="radial_clearance_m", value=float("inf"), cause="allowed is finite for a line contact [m]")),
+    ("johnson", {}, failure("law_argument_out_of_range", key="radial_clearance_m", value=float("inf"), needed="finite for a line contact [m]")),
 ])
 def test_bad_history(law: str, change: dict[str, Any], sentence: Failure) -> None:
     history = {name: values for name, values in {**LOOP, **change}.items() if values is not None}
@@ -102,9 +104,9 @@ def test_bad_history(law: str, change: dict[str, Any], sentence: Failure) -> Non
 
 
 @pytest.mark.parametrize("change, sentence", [
-    ({"effective_radius_m": -1.0}, failure("law_argument_out_of_range", key="effective_radius_m", value=-1.0, cause="allowed is (0, inf) m")),
-    ({"effective_shear_modulus_Pa": 0.0}, failure("law_argument_out_of_range", key="effective_shear_modulus_Pa", value=0.0, cause="allowed is (0, inf) Pa")),
-    ({"friction_coefficient": -0.1}, failure("law_argument_out_of_range", key="friction_coefficient", value=-0.1, cause="allowed is [0, inf)")),
+    ({"effective_radius_m": -1.0}, failure("law_argument_out_of_range", key="effective_radius_m", value=-1.0, needed="(0, inf) m")),
+    ({"effective_shear_modulus_Pa": 0.0}, failure("law_argument_out_of_range", key="effective_shear_modulus_Pa", value=0.0, needed="(0, inf) Pa")),
+    ({"friction_coefficient": -0.1}, failure("law_argument_out_of_range", key="friction_coefficient", value=-0.1, needed="[0, inf)")),
     ({"steps_per_row": 0}, failure("not_positive_integer", key="steps_per_row", value=0)),
 ])
 def test_bad_contact(change: dict[str, Any], sentence: Failure) -> None:
@@ -134,7 +136,7 @@ def test_a_mark_of_byte_order_is_no_part_of_the_first_name(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("text, sentence", [
-    (None, failure("read_failed", file="history.csv", cause="No such file or directory")),
+    (None, failure("read_failed", file="history.csv", cause=os.strerror(errno.ENOENT))),
     ("slide_m,penetration_depth_m\n", failure("no_samples", file="history.csv")),
     ("slide_m,penetration_depth_m\n0\n", failure("row_of_other_length", file="history.csv", line=2, cells=1, width=2)),
     ("slide_m,penetration_depth_m\n0,0\n0,0,0\n", failure("row_of_other_length", file="history.csv", line=3, cells=3, width=2)),

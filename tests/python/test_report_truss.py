@@ -2,6 +2,7 @@
 """Report page of a truss: jumps, ranking of joints, sensitivities; also without results of `truss answers`."""
 from __future__ import annotations
 
+import re
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -22,6 +23,7 @@ from statejump.kinds.truss.page import SHOWN_JUMP
 from statejump.report import labels
 from statejump.report.document import Document
 from statejump.report.drawing import round_down
+from statejump.report.unsolved import UnsolvedDocument
 from statejump.results.contents import Result
 from statejump.results.read import read
 
@@ -59,11 +61,10 @@ def test_numbers_on_the_page_are_those_of_the_answers(statejump: Callable[..., O
     for row in answers.tables["contributions"]:
         assert row["joint"] in found.words and units.text(row["contribution"], "m", 4) in found.words
     strongest = max(answers.tables["sensitivities"], key=lambda row: abs(row["elasticity"]))
-    key = strongest["parameter"].rpartition(".")[2]
-    assert labels.of_kind("truss").plain(key) + " of all revolutes" in found.words
+    assert labels.of_kind("truss").parameter(strongest["parameter"]) in found.words
     assert f"{strongest['elasticity']:+.3g}" in found.words
-    assert "30 nodes and 24 links" in found.words and "take 0.5 to 1 of the temperature change" in found.words
-    assert "Both models" not in found.words and "contributions of all joints add up to" in found.words
+    assert "30 nodes and 24 links" in found.words and "0.5 to 1 of" in found.words
+    assert "Both models" not in found.words and "all joints" in found.words
 
 
 def test_the_drawing_gets_the_jumps_of_each_cycle(results: Path) -> None:
@@ -95,7 +96,7 @@ def test_the_drawing_gets_the_jumps_of_each_cycle(results: Path) -> None:
 def test_a_loop_that_looks_like_a_line_is_shown_without_it(results: Path) -> None:
     document = Document(read(results / "ring_12" / "reduced.h5"), "x.h5", "run1", 1e6)
     shown = {chart["title"]: chart for chart in document.payload()["charts"]}
-    thin = next(chart for title, chart in shown.items() if ", less its straight part of " in title)
+    thin = next(chart for title, chart in shown.items() if "straight part" in title)
     whole = shown[thin["title"].partition(",")[0]]
     assert thin["title"].endswith("/K") and thin["y"]["label"].partition(" [")[0] == whole["y"]["label"].partition(" [")[0]
     change = document.result.models["reduced"]["temperature_change_K"]
@@ -111,8 +112,8 @@ def test_a_loop_that_looks_like_a_line_is_shown_without_it(results: Path) -> Non
 
 def test_page_of_a_reflector(statejump: Callable[..., Outcome], results: Path) -> None:
     found, _ = written(statejump, results / "umbrella_8")
-    assert "Reflecting surface" in found.words and "do not determine the focal length" in found.words
-    assert "What would change the jump" not in found.words and "Focal shift" not in found.words
+    assert "Reflecting surface" in found.words and "focal length" in found.words
+    assert "would change" not in found.words and "Focal shift" not in found.words
     assert found.data["runs"][0]["truss"]["dimension"] == 3
     # Its joints lie in space: journals are drawn about their own axes, which the ribs' planes have as normals.
     axes = [part["axis"] for part in found.data["runs"][0]["scene"]["parts"] if part["type"] == "journal"]
@@ -121,7 +122,7 @@ def test_page_of_a_reflector(statejump: Callable[..., Outcome], results: Path) -
 
 def test_without_answers_joints_are_ranked_by_motion_and_heat(statejump: Callable[..., Outcome], results: Path) -> None:
     found, _ = written(statejump, results / "ring_12")
-    assert "no contributions of joints" in found.words and "not what holds the jump" in found.words
+    assert "no contributions" in found.words and "what holds" in found.words
     result = read(results / "ring_12" / "reduced.h5")
     run, truss = result.models["reduced"], found.data["runs"][0]["truss"]
     assert [measure["key"] for measure in truss["measures"]] == ["heat", "jump"]
@@ -160,7 +161,7 @@ def test_replay_without_clearance_magnifies_the_way(results: Path) -> None:
 
 def test_a_page_of_a_truss_before_it_is_solved(statejump: Callable[..., Outcome]) -> None:
     found, size = written(statejump, TRUSSES / "mast_6.toml")
-    assert "30 nodes and 24 links" in found.words and "Nothing is solved yet." in found.words
+    assert "30 nodes and 24 links" in found.words and UnsolvedDocument.verdict[1] in found.words
     assert [address[:22] for address in found.addresses if address.startswith("data:image")] == ["data:image/png;base64,"]
     assert "increments_per_branch" in found.words and size < 2.5e6
     refused = statejump("report", TRUSSES.parent / "table1.toml")
@@ -178,22 +179,21 @@ def test_a_hundred_joints_in_space(tmp_path: Path, statejump: Callable[..., Outc
     found, size = written(statejump, tmp_path / "results" / "umbrella_100")
     assert size < 10 * MEGABYTE
     truss = found.data["runs"][0]["truss"]
-    assert len(truss["joints"]) == 100 and truss["most"] < 100 and "85 more in the file." in found.words
-    assert "100 revolute joints with clearance" in found.words
+    assert len(truss["joints"]) == 100 and truss["most"] < 100 and "85 more in" in found.words
+    assert "100 revolute joints" in found.words
     # Inputs are summed up, not listed: 200 links in a few rows.
     assert "200 entries" in found.words
 
 
-@pytest.mark.parametrize(("kind", "sentences"), [
-    ("chain_10", ["A plane truss of 11 nodes and 10 links; 1 node is held, 10 guided.",
-                  "10 sliding joints held by friction up to 36.85\u202fN, without stops."]),
-    ("umbrella_8", ["A spatial truss of 32 nodes and 16 links; 16 nodes are held, 16 guided.",
-                    "It has 8 cables and 8 torsion springs."]),
-    ("ring_12", ["Links are shaded: they take 0 to 1 of the temperature change.",
-                 "Joints of the reduced model stick elastically, as those of the DEM."]),
+@pytest.mark.parametrize(("kind", "facts"), [
+    ("chain_10", {"plane": [11, 10, 1, 10], "sliding": [10, 36.85]}),
+    ("umbrella_8", {"spatial": [32, 16, 16, 16], "cables": [8, 8]}),
+    ("ring_12", {"shaded": [0, 1], "elastically": []}),
 ])
-def test_case_in_words(kind: str, sentences: list[str]) -> None:
+def test_case_in_words(kind: str, facts: dict[str, list[float]]) -> None:
+    """One sentence has each word, and these numbers."""
     described = labels.described(sj.load(TRUSSES / f"{kind}.toml").definition)
-    for sentence in sentences:
-        assert sentence in described, described
-    assert described[-1].startswith("The temperature changes by 100\u202fK")
+    for word, numbers in facts.items():
+        (sentence,) = [one for one in described if word in one]
+        assert [float(number) for number in re.findall(r"\d+(?:\.\d+)?", sentence)] == numbers, sentence
+    assert "100\u202fK" in described[-1]

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import copy
+import errno
 import json
+import os
+import re
 from math import inf, nan
 from pathlib import Path
 from typing import Any, ClassVar
@@ -52,7 +55,7 @@ class Part(Section):
     bounds: list[float] | None = numbers(None, "-", -2, 2, "ends")
     tags: list[str] = texts([], "marks", ("red", "blue"))
     notes: list[str] = texts([], "anything")
-    arrays: Any = attached("it is read from elsewhere")
+    arrays: Any = attached("read elsewhere")
 
 
 @definition
@@ -136,7 +139,7 @@ REFUSED: list[tuple[str, Any, Failure]] = [
     ("tags", "red", failure("not_string_list")),
     ("tags", ["red", 1], failure("not_string_list")),
     ("tags", ["red", "bleu"], failure("unknown_name", allowed=("red", "blue"))),
-    ("arrays", [1.0], failure("not_from_file", cause="it is read from elsewhere")),
+    ("arrays", [1.0], failure("not_from_file", cause="read elsewhere")),
 ]
 
 
@@ -177,7 +180,7 @@ def test_what_a_file_lacks_or_has_too_much() -> None:
     assert refused(structure, Book, {"part": part, "thing": things, "mroe": {}}) == (
         failure("misspelt_key", section="section [mroe]", meant="[more]"))
     assert refused(structure, Book, {"part": part, "thing": things, "zzz": {}}) == (
-        failure("no_such_key", section="section [zzz]", known="part, more, thing, other"))
+        failure("no_such_key", section="section [zzz]", known=", ".join(("part", "more", "thing", "other"))))
     # What is unknown comes before what is missing, of any section.
     assert refused(structure, Book, {"more": {"siez_m": 1}, "thing": things}) == (
         failure("misspelt_key", key="more.siez_m", meant="more.size_m"))
@@ -195,14 +198,13 @@ def test_what_a_file_lacks_or_has_too_much() -> None:
 
 def test_needs_of_every_form() -> None:
     needs = {key: rule_of(field).needs() for key, field in fields_of(Part).items()}
-    assert needs == {
-        "size_m": "must be above 0 and at most 10 [m]", "share": "must be between 0 and 1 [-]",
-        "late_s": "must be between -5 and 5 [s]", "count": "must be between 1 and 9 [-]",
-        "best": "must be between 1 and 9 [-]", "on": "true or false is needed", "word": "a text in quotes is needed",
-        "sort": "must be 'one' or 'two' or 'three'", "place_m": "a list of numbers [m] is needed",
-        "bounds": "a list of numbers [-] is needed", "tags": "a list of texts in quotes is needed",
-        "notes": "a list of texts in quotes is needed", "arrays": "a text in quotes is needed",
-    }
+    ranges = {"size_m": Range(0, 10, "m", above=True), "share": Range(0, 1), "late_s": Range(-5, 5, "s"),
+              "count": Range(1, 9), "best": Range(1, 9)}
+    assert {key: needs.pop(key) for key in ranges} == {key: str(allowed) for key, allowed in ranges.items()}
+    assert needs.pop("sort") == "must be 'one' or 'two' or 'three'"
+    named = {"on": "false", "word": "text", "place_m": "numbers [m]", "bounds": "numbers [-]", "tags": "texts",
+             "notes": "texts", "arrays": "text"}
+    assert set(needs) == set(named) and all(re.search(rf"{re.escape(word)}(?!\w)", needs[key]) for key, word in named.items())
     assert rule_of(fields_of(Part)["on"]).unit is None and rule_of(fields_of(Part)["notes"]).names == ()
 
 
@@ -214,7 +216,7 @@ def test_plain_values() -> None:
     assert found["thing"] == [{"name": "A", "mass_kg": 1.0, "load_N": None, "force_N": 2.0, "ends_m": None,
                                "turns": None, "count": 1, "sort": "near", "on": False, "tags": []}]
     assert attached_to_json(Arrays()) == {"rows": 3}
-    with pytest.raises(TypeError, match="dict is no value of a case"):
+    with pytest.raises(TypeError, match="dict"):
         attached_to_json({})
     # A default that is a list is nobody's own.
     first = Part(**PART)
@@ -290,7 +292,7 @@ def test_items_by_columns_are_made_block_by_block() -> None:
     ({"name": [], "mass_kg": []}, failure("not_table_list", key="thing", table="thing")),
     ({"name": ["A"], "mas_kg": [1.0]}, failure("misspelt_key", item="tables.thing", key="mas_kg", meant="mass_kg")),
     ({"name": ["A"]}, failure("missing_key", item="tables.thing", key="mass_kg", allowed=Range(0, 10, "kg", above=True))),
-    ({"mass_kg": [1.0]}, failure("missing_key", item="tables.thing", key="name", cause="a text in quotes is needed")),
+    ({"mass_kg": [1.0]}, failure("missing_key", item="tables.thing", key="name")),
     ({"name": ["A", "B"], "mass_kg": [1.0, 0.0]}, failure("out_of_range", item="thing 'B'", key="mass_kg", value=0.0, allowed=Range(0, 10, "kg", above=True))),
     ({"name": ["A", "B"], "mass_kg": [1.0, nan]}, failure("missing_key", item="thing 'B'", key="mass_kg", allowed=Range(0, 10, "kg", above=True))),
     ({"name": ["A"], "mass_kg": [11.0]}, failure("out_of_range", item="thing 'A'", key="mass_kg", value=11.0, allowed=Range(0, 10, "kg", above=True))),
@@ -304,7 +306,7 @@ def test_items_by_columns_are_made_block_by_block() -> None:
     ({"name": ["A", "B"], "mass_kg": [1.0, 1.0], "sort": ["near", "fra"]}, failure("misspelt_name", item="thing 'B'", key="sort", value="fra", allowed=("near", "far"), meant="far")),
     ({"name": ["A"], "mass_kg": [1.0], "tags": [["red", "bleu"]]}, failure("unknown_name", item="thing 'A'", key="tags", value=["red", "bleu"], allowed=("red", "blue"))),
     ({"name": ["A"], "mass_kg": [1.0], "tags": ["green"]}, failure("unknown_name", item="thing 'A'", key="tags", value=["green"], allowed=("red", "blue"))),
-    ({"name": ["A", None], "mass_kg": [1.0, 1.0]}, failure("missing_key", item="thing 2", key="name", cause="a text in quotes is needed")),
+    ({"name": ["A", None], "mass_kg": [1.0, 1.0]}, failure("missing_key", item="thing 2", key="name")),
     ({"name": ["A", ""], "mass_kg": [1.0, 1.0]}, failure("empty_string", item="thing 2", key="name", value="")),
     ({"name": ["A"], "mass_kg": [1.0], "turns": [2.5]}, failure("wrong_type", item="thing 'A'", key="turns", value=2.5, type="a whole number", allowed=Range(1, 9, "-"))),
     ({"name": ["A"], "mass_kg": [1.0], "turns": [10.0]}, failure("out_of_range", item="thing 'A'", key="turns", value=10, allowed=Range(1, 9, "-"))),
@@ -336,7 +338,7 @@ def test_columns_of_texts_and_of_truth() -> None:
     ([], failure("not_table_list", key="thing", table="thing")),
     ({}, failure("not_table_list", key="thing", table="thing")),
     ([dict(THING), 3], failure("not_table_list", key="thing", table="thing")),
-    ([dict(THING), {"mass_kg": 1.0}], failure("missing_key", item="thing 2", key="name", cause="a text in quotes is needed")),
+    ([dict(THING), {"mass_kg": 1.0}], failure("missing_key", item="thing 2", key="name")),
     ([{"name": "A"}], failure("missing_key", item="thing 'A'", key="mass_kg", allowed=Range(0, 10, "kg", above=True))),
     ([{**THING, "mas_kg": 1.0}], failure("misspelt_key", item="thing 'A'", key="mas_kg", meant="mass_kg")),
     ([{**THING, "name": ""}], failure("empty_string", item="thing 1", key="name", value="")),
@@ -429,16 +431,20 @@ def test_keys_that_moved() -> None:
 
 # The schema that editors read.
 def test_schema_of_every_form() -> None:
+    def needs(key: str) -> str:
+        needed = rule_of(fields_of(Part)[key]).needs()
+        return needed[0].upper() + needed[1:]
+
     found = json_schema.section_schema(Part)
     keys = found["properties"]
     assert "arrays" not in keys and found["required"] == ["size_m"] and found["additionalProperties"] is False
     assert keys["size_m"] == {
         "type": "number", "exclusiveMinimum": 0, "maximum": 10, "x-unit": "m", "x-source": "how large",
-        "description": "Must be above 0 and at most 10 [m]. Required (how large)."}
+        "description": f"{needs('size_m')}. Required (how large)."}
     assert keys["share"]["minimum"] == 0 and keys["share"]["default"] == 0.5
-    assert keys["share"]["description"] == "Must be between 0 and 1 [-]. Default 0.5 (of all)."
+    assert keys["share"]["description"] == f"{needs('share')}. Default 0.5 (of all)."
     assert keys["count"]["type"] == "integer"
-    assert keys["best"]["description"] == "Must be between 1 and 9 [-]. Optional." and "default" not in keys["best"]
+    assert keys["best"]["description"] == f"{needs('best')}. Optional." and "default" not in keys["best"]
     assert keys["on"] == {"type": "boolean", "default": True, "x-source": "whether",
                           "description": "True or false. Default true (whether)."}
     assert keys["word"] == {"type": "string", "pattern": "^[a-z]+$", "description": "Optional: what.", "x-source": "what"}
@@ -446,7 +452,7 @@ def test_schema_of_every_form() -> None:
     assert (keys["place_m"]["type"], keys["place_m"]["minItems"], keys["place_m"]["maxItems"]) == ("array", 2, 2)
     assert keys["place_m"]["items"] == {"type": "number", "minimum": -1, "maximum": 1}
     assert "minItems" not in keys["bounds"] and keys["tags"]["items"] == {"type": "string", "enum": ["red", "blue"]}
-    assert keys["notes"]["description"] == "A list of texts in quotes is needed. Optional: anything."
+    assert keys["notes"]["description"] == f"{needs('notes')}. Optional: anything."
     assert json_schema.section_schema(Thing)["properties"]["name"]["minLength"] == 1
     assert "allOf" not in json_schema.section_schema(Thing)
     if_one = {"properties": {"sort": {"const": "one"}}, "required": ["sort"]}
@@ -478,11 +484,11 @@ def test_schemas_by_name(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content, why", [
     (b"a = [", failure("not_toml_at_line", line=1, cause="Invalid value")),
     (b"a = 1\nb = =\nc = 2\n", failure("not_toml_at_line", line=2, cause="Invalid value")),
-    (b"a = 1\n\na = 2\n", failure("not_toml_at_line", line=3, cause="Cannot overwrite a value")),
+    (b"a = 1\n\na = 2\n", failure("not_toml_at_line", line=3)),
     (b'a = """\n\n', failure("not_toml_at_line", line=2, cause="Unterminated string")),
     (b"a = '\xff'", failure("toml_not_utf8")),
     (b"a = " + 9000 * b"[", failure("toml_too_deep")),
-    (b"a = " + 5000 * b"9", failure("not_toml", cause="Exceeds the limit (4300 digits) for integer string conversion: value has 5000 digits")),
+    (b"a = " + 5000 * b"9", failure("not_toml")),
 ], ids=["list", "value", "twice", "open", "bytes", "deep", "digits"])
 def test_what_is_no_toml(content: bytes, why: Failure, tmp_path: Path) -> None:
     file = tmp_path / "a.toml"
@@ -495,7 +501,7 @@ def test_files_of_toml(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file.write_text("a = 1\n")
     assert toml.read_toml(file, "case") == ("a = 1\n", {"a": 1})
     assert refused(toml.read_toml, tmp_path / "b.toml", "campaign") == failure("case_file_not_found", of="campaign")
-    assert refused(toml.read_toml, tmp_path, "case") == failure("read_failed", cause="Is a directory")
+    assert refused(toml.read_toml, tmp_path, "case") == failure("read_failed", cause=os.strerror(errno.EISDIR))
     monkeypatch.setattr(toml, "LARGEST_BYTES", 6)
     assert toml.read_toml(file, "case")[1] == {"a": 1}
     monkeypatch.setattr(toml, "LARGEST_BYTES", 5)

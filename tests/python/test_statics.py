@@ -2,7 +2,9 @@
 """Rest sets through Python: closed forms, curves and meshes from callables, case files, and written files."""
 from __future__ import annotations
 
+import errno
 import json
+import os
 from math import atan, cos, pi, sin, sqrt
 from pathlib import Path
 
@@ -141,7 +143,7 @@ MISTAKES = {
         failure("misspelt_key", section="section [forces]", meant="[force]")),
     "thermal section": (
         "slot", [("[picture]", '[thermal]\nshape = "sine"\ntemperature_change_max_K = 1\n[picture]')],
-        failure("not_from_file", key="section [thermal]", cause="a force takes temperature_change_K and force_rate_N_per_K")),
+        failure("not_from_file", key="section [thermal]")),
     "panels in space": (
         "ball", [("[[force]]", "[picture]\nfriction_coefficients = [0.1]\n[[force]]")],
         failure("only_below_three_dimensions", key="picture.friction_coefficients")),
@@ -282,7 +284,7 @@ def test_vertices_within_the_rounding_of_floats_are_one(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("file, content, sentence", [
-    ("none.stl", None, failure("mesh_not_read", cause="No such file or directory")),
+    ("none.stl", None, failure("mesh_not_read", cause=os.strerror(errno.ENOENT))),
     ("none.step", "x", failure("suffix_unknown", suffixes=".stl, .obj, .ply, .vtp")),
     ("empty.stl", "solid x\nendsolid x\n", failure("mesh_without_triangles")),
     ("random.ply", "no mesh at all", failure("mesh_without_triangles")),
@@ -312,7 +314,7 @@ def test_library(tmp_path: Path) -> None:
     statics = sj.statics(case)
     frame = statics.frame()
     # Right angle between the forces, wider than both cones: two arcs apart, none in common.
-    assert list(frame["set"]) == ["F1", "up"] + ["union: any force"] * 2 + ["intersection: every force"]
+    assert [name.partition(":")[0] for name in frame["set"]] == ["F1", "up", "union", "union", "intersection"]
     assert frame["angle_rad"][:2].tolist() == pytest.approx([2 * atan(0.3)] * 2, abs=1e-12)
     assert frame["parts"].tolist() == [1, 1, 2, 2, 0] and np.isnan(frame["angle_rad"].iloc[-1])
     assert frame["x_m"][0] == pytest.approx(C) and frame["y_m"][1] == pytest.approx(C)
@@ -322,7 +324,7 @@ def test_library(tmp_path: Path) -> None:
     assert statics.plot(axes) is figure
     assert matplotlib.get_backend() == backend
     shown = statics._repr_html_()
-    assert "union: any force" in shown and "no position holds under every force" in shown
+    assert "union: " in shown and "no position" in shown
     assert "journal" in case._repr_html_()
     other = sj.statics(case, friction_coefficient=0.1)
     assert other.frame()["angle_rad"][0] == pytest.approx(2 * atan(0.1), abs=1e-12)

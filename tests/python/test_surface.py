@@ -160,7 +160,7 @@ def test_command_of_a_table_of_nodes(statejump: Callable[..., Any], tmp_path: Pa
     write_columns(columns, tmp_path / "nodes.csv")
     done = statejump("truss", "surface", "nodes.csv", "--focal-length", FOCAL, "--zernike", 6)
     assert done.status == 0, done.errors
-    assert "tilt of the axis towards x" in done.output and "2 µrad" in done.output
+    assert "axis towards x" in done.output and "2 µrad" in done.output
     rows = (tmp_path / "results" / "nodes" / "surface.csv").read_text().splitlines()
     assert rows[0] == "state,quantity,unit,value" and sum("Zernike" in row for row in rows) == 6
     del columns["z_m"]
@@ -175,7 +175,7 @@ def test_command_of_a_truss(statejump: Callable[..., Any], tmp_path: Path, cases
     done = statejump("truss", "surface", cases / "trusses" / "umbrella_8.toml", "--samples", "samples.csv", "--column",
                      "reflector_rms_of_change_m")
     assert done.status == 0, done.errors
-    assert "end of the last cycle" in done.output and "µm/m at 99 % of 500 samples" in done.output
+    assert "last cycle" in done.output and "µm/m at 99 % of 500 samples" in done.output
     history = (tmp_path / "results" / "umbrella_8" / "surface_history.csv").read_text().splitlines()
     assert history[0].startswith("time_s,temperature_change_K,rms_design_m,rms_rigid_m,rms_rigid_focal_m,tilt_1_rad")
     for arguments, sentence in (

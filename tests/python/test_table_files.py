@@ -94,10 +94,10 @@ def test_what_is_no_such_unit(unit: str, wanted: str) -> None:
 
 
 WRONG = {
-    failure("column_without_unit", column="Force", remedy="accepted are force_N, Force [N], Force [kN], Force [lbf]"): "disp [mm],Force\n1,2\n",
-    failure("column_of_other_unit", column="Force [kg]", unit="kg", quantity="of force", remedy="accepted are force_N, Force [N], Force [kN], Force [lbf]"):
+    failure("column_without_unit", column="Force", accepted=("force_N", "Force [N]", "Force [kN]", "Force [lbf]")): "disp [mm],Force\n1,2\n",
+    failure("column_of_other_unit", column="Force [kg]", unit="kg", quantity="of force", accepted=("force_N", "Force [N]", "Force [kN]", "Force [lbf]")):
     "disp [mm],Force [kg]\n1,2\n",
-    failure("column_without_unit_or_times", column="'time'", remedy="accepted are time_s, time [s], time [min], time [h]"):
+    failure("column_without_unit_or_times", column="'time'", accepted=("time_s", "time [s]", "time [min]", "time [h]")):
     "time,disp [mm],F [N]\n1,2,3\n",
     failure("columns_of_one_key", other="force_N", column="load [kN]", key_of_both="force_N"): "disp [mm],force_N,load [kN]\n1,2,3\n",
     failure("no_such_key", section="column 'Normal [N]'", known="time_s, displacement_m, force_N, rotation_rad, moment_N_m"):
@@ -107,11 +107,11 @@ WRONG = {
     "disp [mm];F [N]\n1.5;1\n1;2,5\n",
     failure("decimal_comma_or_thousands", column="'F [N]'", line=2, cell="'1,234'"):
     "disp [mm]\tF [N]\n1\t1,234\n2\t5,678\n",
-    failure("row_of_other_length", line=2, cells=4, width=2, remedy="decimal commas need ';' between the cells, or quotes"):
+    failure("row_of_other_length", line=2, cells=4, width=2, decimal_commas=True):
     "disp [mm],F [N]\n1,5,2,5\n",
-    failure("bad_cell", column="'F [N]'", line=3, cause="the cell is empty"): "disp [mm],F [N]\n1,2\n3,\n",
-    failure("bad_cell", column="'F [N]'", line=3, cause="'#N/A' is not a finite number"): "disp [mm],F [N]\n1,2\n3,#N/A\n",
-    failure("no_iso_time", column="time", line=3, cause="only some times name their time zone", accepted="2026-03-01T12:00:00 or 12:00:00"):
+    failure("bad_cell", column="'F [N]'", line=3, reason="empty", cell=""): "disp [mm],F [N]\n1,2\n3,\n",
+    failure("bad_cell", column="'F [N]'", line=3, reason="no_finite_number", cell="#N/A"): "disp [mm],F [N]\n1,2\n3,#N/A\n",
+    failure("no_iso_time", column="time", line=3, reason="some_time_zones", accepted="2026-03-01T12:00:00 or 12:00:00"):
     "time,disp [mm]\n2026-03-01T12:00:00Z,1\n2026-03-01T12:00:00,1\n",
     failure("no_samples"): "disp [mm],F [N]\n\n",
 }
@@ -195,12 +195,12 @@ def test_tables_as_programs_write_them(tmp_path: Path, content: bytes) -> None:
 
 
 @pytest.mark.parametrize("content, said", [
-    (b"time_s,A_K\nh,K\n0,1.5\n10,2\n", failure("bad_cell", column="'A_K'", line=2, cause="'K' is not a finite number")),
-    (b"Time,A\ns,furlong-ish\n0,1\n1,2\n", failure("temperature_column_without_unit", column="'A'", cause="it names no unit of temperature")),
+    (b"time_s,A_K\nh,K\n0,1.5\n10,2\n", failure("bad_cell", column="'A_K'", line=2, reason="no_finite_number", cell="K")),
+    (b"Time,A\ns,furlong-ish\n0,1\n1,2\n", failure("temperature_column_without_unit", column="'A'", unit="")),
     (b",time_s,A_K\n0.5,0,1\n1.5,1,2\n", failure("first_column_without_name", line=2)),
     (b",time_s,A_K\n0,0,1\n2,1,2\n", failure("first_column_without_name", line=3)),
-    (b"# c\n# time_s,A_K\n0,1\n1,x\n", failure("bad_cell", column="'A_K'", line=4, cause="'x' is not a finite number")),
-    (b"Time,A\ns,K\n0,1\n1,x\n", failure("bad_cell", column="'A [K]'", line=4, cause="'x' is not a finite number")),
+    (b"# c\n# time_s,A_K\n0,1\n1,x\n", failure("bad_cell", column="'A_K'", line=4, reason="no_finite_number", cell="x")),
+    (b"Time,A\ns,K\n0,1\n1,x\n", failure("bad_cell", column="'A [K]'", line=4, reason="no_finite_number", cell="x")),
     (b"# time_s,A_K\n", failure("no_column")),
     (b"\n   0.0e+00   1.5e+00\n   1.0e+01   2.0e+00\n", failure("table_without_header", line=2)),
     (b"Time,A_K\n0 sec,1\n1 min,2\n", failure("column_without_unit_or_times", column="'Time'")),

@@ -14,6 +14,7 @@ import pytest
 import statejump as sj
 from conftest import REPOSITORY, Outcome
 from failures import failure
+from statejump.core.notes import Note
 
 TABLE = {
     "thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.table_time_s": [0, 5, 10],
@@ -98,4 +99,4 @@ def test_command_tells_the_old_place_in_one_line(statejump_process: Callable[...
     (tmp_path / "old.toml").write_text(text.replace(line + "\n", "").replace("[dem]", "[dem]\nperiod_s = 0.25"))
     done = statejump_process("reduced", "old.toml")
     assert done.status == 0
-    assert done.errors == "warning: old.toml: dem.period_s is thermal.period_s now; the old place is still understood\n"
+    assert done.errors == f"warning: {Note('key_moved', where='old.toml: ', path='dem.period_s', now='thermal.period_s')}\n"

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from conftest import Outcome
-from failures import Failure, failing, failure
+from failures import Failure, failing, failure, note
 from test_truss_iwan import bolted
 
 import statejump as sj
@@ -213,7 +213,7 @@ def test_verdict_is_of_the_output_that_was_chosen(mast: TrussPath) -> None:
         output = chosen_output(both, f"node:{name}")
         found = verdict(both, both, 100, output)
         words[name] = (found.word, others(both, both, found, output))
-    assert words[node] == ("shakedown", [f"node {node} settles, other nodes still move: node {other} by 100 µm in cycle 3"])
+    assert words[node] == ("shakedown", [note("others_move", output=f"node {node}", node=other, moved="100 µm", cycle=3)])
     assert words[other] == ("ratcheting", [])
 
 

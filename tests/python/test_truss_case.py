@@ -188,11 +188,11 @@ MISTAKES: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
     "missing key": (
         set_key("link", "AB", young_modulus_Pa=None), failure("missing_key", item="link 'AB'", key="young_modulus_Pa", allowed=Range(0, 10000000000000.0, "Pa", above=True))),
     "missing nodes": (
-        set_key("link", "AB", nodes=None), failure("missing_key", item="link 'AB'", key="nodes", cause="a list of texts in quotes is needed")),
+        set_key("link", "AB", nodes=None), failure("missing_key", item="link 'AB'", key="nodes")),
     "missing position": (
         set_key("node", "B", position_m=None), failure("missing_key", item="node 'B'", key="position_m", allowed=Range(-1000000.0, 1000000.0, "m"))),
     "missing name": (
-        set_key("link", "CJ", name=None), failure("missing_key", item="link 2", key="name", cause="a text in quotes is needed")),
+        set_key("link", "CJ", name=None), failure("missing_key", item="link 2", key="name")),
     "empty name": (
         set_key("link", "CJ", name=""), failure("empty_string", item="link 2", key="name", value="")),
     "no nodes": (without("node"), failure("missing_key", section="section [[node]]")),
@@ -744,7 +744,7 @@ def test_generators_do_not_overwrite(tmp_path: Path, statejump: Callable[..., An
     case = load_case(tmp_path / "a.toml")
     assert (case.name, case.thermal.cycles, len(case.link)) == ("a", 2, 3)
     lines = (tmp_path / "a.toml").read_text().splitlines()
-    assert lines[1] == "# Made by: statejump truss chain 3 --cycles 2 -o a.toml"
+    assert lines[1].partition(": ")[2].split() == ["statejump", "truss", "chain", "3", "--cycles", "2", "-o", "a.toml"]
 
 
 @pytest.mark.parametrize("arguments, expected", [

@@ -280,7 +280,7 @@ def test_bar_jumps_by_partial_slip_as_in_the_dem() -> None:
     assert ends[-1, 1, 0] - ends[0, 1, 0] == pytest.approx(77.83e-9, rel=1e-4)
     assert jumps["mindlin_deresiewicz"] == pytest.approx(77.83e-9, rel=3e-3)
     assert abs(jumps["mindlin"]) < 0.3e-9
-    assert "set dem.friction_law to 'mindlin_deresiewicz'" in reasons["mindlin"]
+    assert "dem.friction_law" in reasons["mindlin"] and "'mindlin_deresiewicz'" in reasons["mindlin"]
     assert "friction_law" not in reasons["mindlin_deresiewicz"]
 
 

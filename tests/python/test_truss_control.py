@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from failures import Failure, failure
+from failures import Failure, failure, note
 import statejump as sj
 from statejump.cli.control import control_command
 from statejump.control.study import DesignChoices, Sweep
@@ -57,7 +57,7 @@ def test_elasticity_at_the_value_found_is_that_of_the_closed_form(cases: Path) -
     for one in scaled:
         assert one["value"] == pytest.approx(1e-5 * STIFFNESS / 30, rel=1e-7) and one["verdict"] == "smooth"
         assert one["elasticity"] == pytest.approx(1.0, abs=1e-6) and one["joints_go_as_in_the_case"]
-    assert "There the path is smooth: 1 % more changes the jump by" in found.sentences[0]
+    assert found.sentences[0] == note("smallest_change", verdict="smooth", elasticity=spring["elasticity"])
 
 
 def test_best_of_several_places_is_that_of_the_softest_spring() -> None:
@@ -86,8 +86,8 @@ def test_best_of_several_places_is_that_of_the_softest_spring() -> None:
     for place, value in zip(places[1:3], values[1:3]):
         assert jump_m(place, value) == pytest.approx(wanted, rel=1e-6)
     assert found.recommendation["best_spring"] == "add_spring N0 N3" and values[2] < values[1]
-    assert "no scanned value from" in found.sentences[0]
-    assert found.sentences[-1].startswith("Best of 4, 2 of which reach the bound, is the softest spring: add_spring N0 N3")
+    assert found.sentences[0] == note("no_value_found")
+    assert found.sentences[-1] == note("best_of_several", asked=4, reaching=2, parameter="add_spring N0 N3")
 
 
 def test_jump_that_turns_is_said_and_both_ranges_are_found() -> None:
@@ -101,7 +101,7 @@ def test_jump_that_turns_is_said_and_both_ranges_are_found() -> None:
     assert back == pytest.approx((strain * length - 1e-4) * STIFFNESS / (friction_N * (1 + strain)), rel=1e-6)
     assert found.sweeps[0].recommended == turned  # 0.34 times: nearer to 1 than 3.65 times
     assert not found.recommendation["candidates"][0]["monotone"]
-    assert any("is not monotone, it turns near" in remark for remark in found.remarks)
+    assert note("jump_not_monotone", parameter="scale slider.S1.friction_coefficient") in found.remarks
 
 
 def made_search(jump: Any, values: tuple[float, ...]) -> Search:
@@ -161,7 +161,7 @@ def test_without_candidates_all_that_the_jump_may_follow_is_scanned() -> None:
 
 def test_a_node_that_does_not_jump_has_nothing_to_control() -> None:
     found = sj.truss.control(sj.truss.chain(2), node="N0", scale=["slider.*.friction_coefficient"])
-    assert found.sentences == ["The node does not jump: there is nothing to control."]
+    assert found.sentences == [note("nothing_to_control")]
 
 
 @pytest.mark.parametrize("given, said", [

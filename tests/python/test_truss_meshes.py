@@ -77,7 +77,7 @@ def test_a_mesh_gives_the_numbers_of_the_truss_by_hand(
     write(tmp_path / f"deck{suffix}")
     told = statejump("truss", "import", f"deck{suffix}", "-o", "deck.toml", *ARGUMENTS)
     assert told.status == 0, told.errors
-    assert "cells triangle" in told.output and "no part of a truss" in told.output
+    assert "cells triangle" in told.output and "no part" in told.output
     by_hand = sj.load({
         "case": {"name": "deck", "kind": "truss"}, "truss": {"dimension": 2},
         "node": [{"name": "N1", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},

@@ -194,7 +194,7 @@ WRONG = {
     failure("columns_of_one_key", file="node.csv", other="name", column="name", key_of_both="name"): ("name,name\nN0,N0\n", "node"),
     failure("no_column", file="node.csv"): ("", "node"),
     failure("no_row", file="node.csv"): ("name,position_m\n", "node"),
-    failure("bad_cell", file="node.csv", line=3, column="'position_m'", cause="'x' is not a finite number"): (
+    failure("bad_cell", file="node.csv", line=3, column="'position_m'", reason="no_finite_number", cell="x"): (
         "name,position_m\nN0,0 0\nN1,1 x\n", "node"),
     failure("cell_of_other_length", file="node.csv", line=3, column="'position_m'", width=2, numbers=1): (
         "name,position_m\nN0,0 0\nN1,1\n", "node"),
@@ -206,7 +206,7 @@ WRONG = {
         "name,position_m,fixed\nN0,0 0,w\n", "node"),
     failure("duplicate_name", file="case.toml", item="node 2", key="name", value="N0", part="node"): (
         "name,position_m\nN0,0 0\nN0,1 0\n", "node"),
-    failure("missing_key", file="case.toml", item="node 2", key="name", cause="a text in quotes is needed"): ("name,position_m\nN0,0 0\n,1 0\n", "node"),
+    failure("missing_key", file="case.toml", item="node 2", key="name"): ("name,position_m\nN0,0 0\n,1 0\n", "node"),
     failure("missing_key", file="case.toml", item="tables.node", key="position_m", allowed=Range(-1000000.0, 1000000.0, "m")): ("name\nN0\n", "node"),
     failure("cell_not_boolean", file="spring.csv", line=2, column="'cable'", cell="'yes'"): (
         "name,nodes,stiffness_N_per_m,cable\nS,N0 N1,1,yes\n", "spring"),

@@ -45,7 +45,7 @@ MISTAKES = {
         [('kind = "umbrella"', "kind = 3")], failure("not_string", key="case.kind", value=3)),
     "kind left out": (
         [('kind = "umbrella"\n', "")],
-        failure("missing_key", key="case.kind", cause="a text in quotes is needed")),
+        failure("missing_key", key="case.kind")),
     "kind misspelt": (
         [('kind = "umbrella"', 'knid = "umbrella"')], failure("misspelt_key", key="case.knid", meant="case.kind")),
     "header misspelt": ([("[case]", "[caes]")], failure("misspelt_key", section="section [caes]", meant="[case]")),

@@ -20,14 +20,12 @@ from pathlib import Path
 import pytest
 
 import statejump as sj
-from conftest import BUILT, REPOSITORY, WITHOUT_YADE, Outcome
-from failures import failing
+from conftest import BUILT, REPOSITORY, Outcome
+from failures import failing, failure
 from statejump import _paths
 
 sys.path.insert(0, str(REPOSITORY / "cmake"))
 import statejump_wheel  # noqa: E402
-
-REFUSED = (f"YADE is missing: {WITHOUT_YADE}; for 'dem' and 'compare' build with 'make demo' on Debian 12 or 13")
 
 
 @pytest.fixture(autouse=True)
@@ -44,7 +42,7 @@ def test_models_with_yade_are_refused(
     # Not even the reduced model of compare runs before.
     monkeypatch.setattr("statejump.kinds.running.run", lambda *given, **options: pytest.fail("a model ran"))
     done = statejump(command, case)
-    assert (done.status, done.errors) == (2, f"error: {REFUSED}\n")
+    assert (done.status, done.failure) == (2, failure("built_without_yade"))
 
 
 def test_the_dem_of_a_case_in_python_is_refused() -> None:
@@ -79,8 +77,8 @@ def test_tools_that_are_there_are_not_fetched(monkeypatch: pytest.MonkeyPatch, t
 
 
 @pytest.mark.parametrize("python, sentence", [
-    ("/nowhere/python3", "STATEJUMP_PYTHON=/nowhere/python3 does not exist; set it to"),
-    ("{folder}/old", "{folder}/old is Python 3.10.9, needed is 3.11 or later; set -DSTATEJUMP_PYTHON=")])
+    ("/nowhere/python3", "STATEJUMP_PYTHON=/nowhere/python3 "),
+    ("{folder}/old", "{folder}/old is Python 3.10.9, ")])
 def test_an_unfit_python_is_refused_by_name(tmp_path: Path, python: str, sentence: str) -> None:
     """The build's check of the version, in a separate CMake project with a Python that reports an old version."""
     old = tmp_path / "old"

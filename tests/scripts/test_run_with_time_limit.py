@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -23,31 +24,32 @@ def test_a_check_runs_where_what_it_takes_is_left(used: int, runs: bool):
     done = run(FORTY_MINUTES, used, QUARTER, "echo", "it ran")
     assert done.returncode == 0
     if runs:
-        assert done.stdout == "it ran\nthe check passed\n"
+        assert done.stdout.startswith("it ran\n") and done.stdout.endswith("passed\n")
     else:
-        assert done.stdout == f"the check skipped: takes about 15 min, {(used + 30) // 60} min of 40 min are used\n"
+        assert "skipped" in done.stdout and re.findall(r"\d+", done.stdout) == ["15", f"{(used + 30) // 60}", "40"]
 
 
 @pytest.mark.parametrize("status", [1, 2, 8])
 def test_a_failure_is_a_failure(status: int):
     done = run(FORTY_MINUTES, 0, QUARTER, "bash", "-c", f"echo output; exit {status}")
-    assert (done.returncode, done.stdout) == (status, f"output\nthe check FAILED ({status})\n")
+    assert (done.returncode, done.stdout.startswith("output\n")) == (status, True)
+    assert done.stdout.endswith(f"FAILED ({status})\n")
 
 
 def test_what_cannot_run_here_is_skipped_with_its_reason():
     done = run(FORTY_MINUTES, 0, QUARTER, "bash", "-c", "echo first; echo no network; exit 75")
-    assert (done.returncode, done.stdout) == (0, "first\nno network\nthe check skipped: no network\n")
+    assert (done.returncode, done.stdout.startswith("first\nno network\n")) == (0, True)
+    assert done.stdout.endswith("skipped: no network\n")
 
 
 def test_what_takes_too_long_is_ended():
     done = run(FORTY_MINUTES, FORTY_MINUTES - 1, 1, "sleep", "60")
-    said = "the check skipped: not ended after 0 min, all that was left of 40 min\n"
-    assert (done.returncode, done.stdout) == (0, said)
+    assert done.returncode == 0 and "skipped" in done.stdout and re.findall(r"\d+", done.stdout) == ["0", "40"]
 
 
 @pytest.mark.parametrize(("mirror", "path", "reason"), [
-    ("http://127.0.0.1:9/debian", None, "Failed getting release file http://127.0.0.1:9/debian/dists/trixie/Release"),
-    ("", "/usr/bin:/bin", "debootstrap is missing: apt-get install debootstrap"),
+    ("http://127.0.0.1:9/debian", None, "http://127.0.0.1:9/debian/dists/trixie/Release"),
+    ("", "/usr/bin:/bin", "apt-get install debootstrap"),
 ])
 @pytest.mark.skipif(os.geteuid() != 0 or not Path("/usr/sbin/debootstrap").exists(),
                     reason="needs root and debootstrap")
@@ -56,5 +58,5 @@ def test_a_debian_that_cannot_be_had_is_skipped(tmp_path: Path, mirror: str, pat
                MIRROR=mirror, PATH=path or os.environ["PATH"])
     assert done.returncode == 0
     last = done.stdout.splitlines()[-1]
-    assert last.startswith("the check skipped: Debian 13 cannot be had here: ") and last.endswith(reason)
+    assert "skipped: Debian 13" in last and last.endswith(reason)
     assert not (tmp_path / "debian").exists() or not list((tmp_path / "debian").iterdir())

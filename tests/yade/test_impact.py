@@ -151,6 +151,6 @@ def test_laws_and_places_that_two_balls_cannot_have(seen):
 def test_example():
     done = yade(REPOSITORY / "yade_scripts" / "examples" / "impact.py", environment={"RESTITUTION": "0.8", "SPIN": "500"})
     assert done.returncode == 0, done.stderr
-    assert "Hertz without loss 40.3" in done.stdout and "Hertz without loss 10.69" in done.stdout
+    assert "loss 40.3" in done.stdout and "loss 10.69" in done.stdout
     found = float(done.stdout.split("restitution ")[1].split(",")[0])
     assert found == pytest.approx(0.8, abs=1e-3)  # 2000 steps, and the normal turns meanwhile

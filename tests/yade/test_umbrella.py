@@ -19,11 +19,11 @@ def read(path):
 
 def test_tutorial_and_its_recording(tmp_path):
     done = yade(TUTORIAL, environment={"PARAVIEW": str(tmp_path / "rib-")})
-    found = re.search(r"first contact at ([0-9.]+) K; the closed form .* is ([0-9.]+) K", done.stdout)
+    found = re.search(r"first contact at ([0-9.]+) K; .* ([0-9.]+) K", done.stdout)
     assert found, done.stdout + done.stderr
     assert abs(float(found[1]) - 35.0877) <= 1e-3 and float(found[2]) == 35.0877
     # The reduced model gives 1.97503 mrad; at this step friction leaves 1e-6 rad.
-    jump = float(re.search(r"state jump of AB: ([-0-9.]+) mrad", done.stdout)[1])
+    jump = float(re.search(r"jump of AB: ([-0-9.]+) mrad", done.stdout)[1])
     assert abs(jump - 1.97503) < 2e-3
 
     assert not list(tmp_path.glob(".*"))  # nothing half-written

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 
@@ -501,19 +500,13 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
   return model.axial_rigidity() * growth * mean;
 }
 
-std::vector<std::string> warnings(const Path& path) {
-  const double largest = path.largest_compression;
-  const double clamped = euler_load(path.model, EndCondition::clamped_clamped);
-  const double pinned = euler_load(path.model, EndCondition::pinned_pinned);
-  if (largest <= pinned) return {};
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "axial force %.4g N at a temperature change of %.4g K exceeds the %s Euler load of "
-                "an unguided link of square section (%.4g N clamped-clamped, %.4g N "
-                "pinned-pinned): the model assumes a guided link",
-                largest, path.largest_compression_temperature_change,
-                largest > clamped ? "clamped-clamped" : "pinned-pinned", clamped, pinned);
-  return {text};
+std::optional<EulerLoadExceeded> exceeded_euler_load(const Path& path) {
+  const EulerLoadExceeded found{path.largest_compression,
+                                path.largest_compression_temperature_change,
+                                euler_load(path.model, EndCondition::clamped_clamped),
+                                euler_load(path.model, EndCondition::pinned_pinned)};
+  if (found.axial_force <= found.pinned) return std::nullopt;
+  return found;
 }
 
 }  // namespace statejump::spring_slider

@@ -13,6 +13,7 @@ from statejump.campaign.cluster import open_client, restarts_workers
 from statejump.campaign.plan import Recipe
 from statejump.campaign.work import Batch, Batches, Sample, batch_of, run_samples
 from statejump.core.errors import StatejumpError
+from statejump.core.notes import Note
 
 from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up
 
@@ -86,7 +87,7 @@ def _finished(
             pass
     for index in suspects:
         future = client.submit(run_samples, recipe, [index], pure=False)
-        lost = Sample(index, None, "the run ended its worker process, time and again")
+        lost = Sample(index, None, Note("worker_ended"))
         yield _answer(client, future) or (0.0, batch_of([lost], len(recipe.outcomes)))
 
 

@@ -21,6 +21,7 @@ import numpy as np
 from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch
 from statejump.core.errors import NotWritten, StatejumpError, Unreadable
+from statejump.core.notes import Note
 
 NAME = "samples.journal"
 FORMAT = "statejump journal"
@@ -41,12 +42,13 @@ class Kept:
 
 
 class Journal(Kept):
-    """The journal of a campaign, as a context manager. ``note`` reports the removal of a torn line; else it is ""."""
+    """The journal of a campaign, as a context manager. ``note`` reports the removal of a torn line, if any."""
 
     def __init__(self, folder: Path, campaign: Plan, restart: bool) -> None:
         """Open or create the journal. :raises StatejumpError: the journal belongs to another campaign, or is damaged"""
         super().__init__()
-        self.path, self.note = folder / NAME, ""
+        self.path = folder / NAME
+        self.note: Note | None = None
         self._columns = len(campaign.outcomes)
         self._header = {
             "format": FORMAT, "version": VERSION, "campaign": campaign.key, "model": campaign.model,
@@ -89,7 +91,7 @@ class Journal(Kept):
                 if place < len(lines):
                     raise self._damaged(place) from None
                 self._stream.truncate(length)
-                self.note = f"{self.path}: the last line was torn and is cut off; its samples are run again"
+                self.note = Note("journal_torn", path=self.path)
             length += len(line)
         return entries
 

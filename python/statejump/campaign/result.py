@@ -162,7 +162,7 @@ def run_in(
     with Journal(folder, plan, restart) as kept:
         try:
             done = execute.run_missing(plan, kept, scheduler, workers, on_progress)
-            done.note = kept.note
+            done.note = kept.note or ""
         except KeyboardInterrupt:
             finished = sum(index < plan.samples for index in kept.finished)
             raise Interrupted(code="campaign_interrupted", finished=finished, samples=plan.samples,

@@ -13,6 +13,7 @@ from statejump.campaign.outputs import needs_all_samples, values
 from statejump.campaign.plan import Recipe
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
+from statejump.core.notes import Note
 from statejump.core.progress import silent
 from statejump.core.run import Run
 from statejump.kinds import KINDS, has, of, register, require
@@ -66,7 +67,7 @@ def run_sample(recipe: Recipe, index: int) -> Sample:
     except StatejumpError as problem:
         return Sample(index, None, _one_line(str(problem)), _one_line(problem.general()))
     except Exception as problem:  # any exception: a failed sample must not end the campaign
-        said = _one_line(f"the run failed: {type(problem).__name__}: {problem}")
+        said = Note("sample_failed", error=type(problem).__name__, text=_one_line(str(problem)))
         return Sample(index, None, said, said)
 
 

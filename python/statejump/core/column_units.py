@@ -8,6 +8,7 @@ module loads the library pint, which takes some time.
 from __future__ import annotations
 
 import re
+from typing import Any
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -80,7 +81,7 @@ def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column
     if key == "time_s":
         return Column(name, key, iso=True)
     if wanted != "-":
-        raise StatejumpError(code="column_without_unit", remedy=accepted(name, key, wanted), column=name)
+        raise StatejumpError(code="column_without_unit", **accepted(name, key, wanted), column=name)
     return Column(name, key)
 
 
@@ -106,19 +107,20 @@ def _converted(name: str, base: str, unit: str, key: str) -> Conversion:
     if unit in NO_UNIT:
         if wanted in ("-", "rad") and unit != "" or wanted == "-":
             return SAME
-        raise StatejumpError(code="column_without_unit", remedy=accepted(base, key, wanted), column=name)
+        raise StatejumpError(code="column_without_unit", **accepted(base, key, wanted), column=name)
     found = conversion(unit, wanted, change="change" in key)
     if found is None:
         quantity = f"of {QUANTITIES[wanted]}" if wanted in QUANTITIES else f"like {wanted}"
-        raise StatejumpError(code="column_of_other_unit", remedy=accepted(base, key, wanted), column=name, unit=unit,
+        raise StatejumpError(code="column_of_other_unit", **accepted(base, key, wanted), column=name, unit=unit,
                              quantity=quantity)
     return found
 
 
-def accepted(base: str, key: str, wanted: str) -> str:
-    """Return the accepted spellings of a column name, for an error message."""
+def accepted(base: str, key: str, wanted: str) -> dict[str, Any]:
+    """Return the remedy of an error about a column name: its accepted spellings, as text and as a tuple."""
     shown = [f"{base.strip()} [{unit}]" for unit in (wanted, *EXAMPLES.get(wanted, ()))] if wanted != "-" else [key]
-    return f"accepted are {', '.join(dict.fromkeys((key, *shown)))}"
+    names = tuple(dict.fromkeys((key, *shown)))
+    return {"remedy": f"accepted are {', '.join(names)}", "accepted": names}
 
 
 def conversion(unit: str, wanted: str, change: bool = False) -> Conversion | None:

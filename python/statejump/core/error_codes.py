@@ -68,6 +68,7 @@ CODES: dict[str, Code] = {
     "wrong_list_length": Code(cause="must be a list of {length} numbers [{unit}]"),
     "wrong_type": Code(cause="must be {type}, {range}"),
     "wrong_value": Code(text="the value of a key is wrong"),
+    "not_in_build": Code(what="engine", cause="{name} is not in this build", remedy="run make build"),
     # Several keys together
     "below_minimum": Code(cause="must be at least {least}"),
     "clearance_below_precision": Code(
@@ -107,13 +108,17 @@ CODES: dict[str, Code] = {
         cause="{numbers} numbers, other rows have {width}",
     ),
     "cell_too_long": Code(what="line {line}, column {column}", cause="{entries} entries, a cell has {most} at most"),
-    "bad_cell": Code(what="line {line}, column {column}"),
+    "bad_cell": Code(what="line {line}, column {column}", further=("reason", "cell")),
     "column_no_numbers": Code(beside="as a column", cause="every row needs a number there"),
     "column_not_in_tables": Code(what="column {column}", cause="a table cannot have this key"),
-    "column_of_other_unit": Code(what="column {column!r}", cause="{unit!r} is not a unit {quantity}"),
+    "column_of_other_unit": Code(
+        what="column {column!r}", cause="{unit!r} is not a unit {quantity}", further=("accepted",),
+    ),
     "column_without_name": Code(what="line {line}: column {column} has no name"),
-    "column_without_unit": Code(what="column {column!r}", cause="it names no unit"),
-    "column_without_unit_or_times": Code(what="column {column}", cause="it names no unit and has no ISO times"),
+    "column_without_unit": Code(what="column {column!r}", cause="it names no unit", further=("accepted",)),
+    "column_without_unit_or_times": Code(
+        what="column {column}", cause="it names no unit and has no ISO times", further=("accepted",),
+    ),
     "columns_of_one_key": Code(
         what="column {column!r} is not allowed beside {other!r}",
         cause="both are {key_of_both}",
@@ -159,6 +164,7 @@ CODES: dict[str, Code] = {
     "first_column_no_times": Code(
         what="line 1: the first column is {column}",
         remedy="accepted are time_s, time [h], or time with ISO times",
+        further=("reason",),
     ),
     "first_column_without_name": Code(what="line {line}: column 1 has no name", cause="and does not count the rows"),
     "interrupted_before_first_sample": Code(what="interrupted before the first sample; nothing was written"),
@@ -188,7 +194,7 @@ CODES: dict[str, Code] = {
     ),
     "state_jump_undefined": Code(cause="{output} needs a state jump, and {why}"),
     "no_column": Code(what="line 1: there is no column"),
-    "no_iso_time": Code(what="line {line}, column {column!r}", remedy="write {accepted}"),
+    "no_iso_time": Code(what="line {line}, column {column!r}", remedy="write {accepted}", further=("reason",)),
     "no_result_format": Code(what="not a result file", cause="it does not begin with {begin!r}"),
     "no_row": Code(what="has no row below its header"),
     "no_samples": Code(what="holds no samples"),
@@ -244,7 +250,9 @@ CODES: dict[str, Code] = {
         cause="the table lasts {lasts:g} s, and the return to the reference temperature ends after it",
         remedy="leave {key_to_leave_out} out",
     ),
-    "row_of_other_length": Code(what="line {line} has {cells} cells", cause="the header has {width}"),
+    "row_of_other_length": Code(
+        what="line {line} has {cells} cells", cause="the header has {width}", further=("decimal_commas",),
+    ),
     "truncated_samples": Code(what="ends within a row"),
     "samples_without_header": Code(what="does not begin with the names of columns"),
     "several_columns": Code(cause="{table} has the columns {columns}"),
@@ -267,8 +275,10 @@ CODES: dict[str, Code] = {
         remedy="install Debian's package 'python3-vtk9'",
     ),
     "wrong_suffix": Code(cause="the file must end with {suffixes}"),
-    "temperature_column_without_unit": Code(what="line 1: column {column}", remedy="accepted are {accepted}"),
-    "bad_temperature": Code(what="column {column} at {at_s:g} s"),
+    "temperature_column_without_unit": Code(
+        what="line 1: column {column}", remedy="accepted are {accepted}", further=("unit",),
+    ),
+    "bad_temperature": Code(what="column {column} at {at_s:g} s", further=("reason", "value_K")),
     "temperatures_missing": Code(what="must have one of the data sets {data_sets}"),
     "temperatures_of_other_shape": Code(
         what="{data_set} is {rows} x {columns}",
@@ -808,7 +818,7 @@ CODES: dict[str, Code] = {
     "tensile_force": Code(cause="must be at least 0 [N]: the bodies do not pull on each other"),
     "column_partner_missing": Code(cause="{partner} goes with it"),
     "compiler_not_run": Code(what="no C++ compiler", cause="$CXX = {compiler!r} cannot be run"),
-    "law_argument_out_of_range": Code(text="an argument of the law is out of range"),
+    "law_argument_out_of_range": Code(text="an argument of the law is out of range", further=("needed",)),
     "first_row_not_zero": Code(cause="must be 0 [N] in the first row, where the contact is made"),
     "history_column_missing": Code(cause="the history needs {needs_}"),
     "history_columns_exclude": Code(beside="beside {other}", cause="the history needs {needs_}, one of them"),
@@ -839,7 +849,7 @@ CODES: dict[str, Code] = {
     "fclib_group_missing": Code(what="{group} is missing"),
     "fclib_index": Code(what="{group}/{data_set} holds {index}", cause="must be between 0 and {largest}"),
     "fclib_matrix_shape": Code(what="{group} is {rows} x {columns}", cause="must be {wanted_rows} x {wanted_columns}"),
-    "fclib_missing": Code(what="/{group} is missing"),
+    "fclib_missing": Code(what="/{group} is missing", further=("other",)),
     "fclib_not_data_set": Code(what="{data_set} is not a data set"),
     "fclib_not_group": Code(what="{group} is not a group"),
     "fclib_not_number": Code(what="{group}/{data_set} has {entries} entries", cause="must be one number"),

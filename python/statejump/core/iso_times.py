@@ -47,7 +47,9 @@ def seconds(cells: Sequence[str], place: Callable[[int], tuple[int, str]], path:
             found.append((date - first).total_seconds())
         else:
             line, column = place(index)
-            cause = "only some times name their time zone" if first and date else f"{cell.strip()[:30]!r} is no time"
-            raise Unreadable(code="no_iso_time", cause=cause, file=path, line=line, column=column, accepted=ACCEPTED)
+            some_zones = first is not None and date is not None
+            cause = "only some times name their time zone" if some_zones else f"{cell.strip()[:30]!r} is no time"
+            raise Unreadable(code="no_iso_time", cause=cause, file=path, line=line, column=column, accepted=ACCEPTED,
+                             reason="some_time_zones" if some_zones else "no_time")
     values = np.array(found)
     return np.asarray(values - values[0])

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from statejump.core.notes import Note
+
 LEAST_MODULUS_PA = 1e6  # modulus of soft rubber; foams are no links
 LARGEST_STRAIN = 0.1  # limit of the linear elastic models
 # No structure in space is assembled at a lower temperature. 20 °C, written as kelvin, is lower.
@@ -26,8 +28,8 @@ def clearances(what: str, names: Sequence[str], clearance_m: np.ndarray, radius_
     found = np.flatnonzero(clearance_m > radius_m)
     if len(found):
         worst = found[np.argmax(clearance_m[found] / radius_m[found])]
-        yield (f"{what} {names[worst]!r}{_others(len(found) - 1)}: the radial clearance of {clearance_m[worst]:.4g} m "
-               f"is above the radius of {radius_m[worst]:.4g} m; check the units")
+        yield Note("clearance_above_radius", what=what, name=names[worst], others=_others(len(found) - 1),
+                   clearance_m=float(clearance_m[worst]), radius_m=float(radius_m[worst]), items=len(found))
 
 
 def moduli(what: str, names: Sequence[str], young_modulus_Pa: np.ndarray) -> Iterable[str]:
@@ -35,8 +37,8 @@ def moduli(what: str, names: Sequence[str], young_modulus_Pa: np.ndarray) -> Ite
     found = np.flatnonzero(young_modulus_Pa < LEAST_MODULUS_PA)
     if len(found):
         worst = found[np.argmin(young_modulus_Pa[found])]
-        yield (f"{what} {names[worst]!r}{_others(len(found) - 1)}: Young's modulus of {young_modulus_Pa[worst]:.4g} Pa "
-               "is below 1 MPa; check the units")
+        yield Note("modulus_implausible", what=what, name=names[worst], others=_others(len(found) - 1),
+                   young_modulus_Pa=float(young_modulus_Pa[worst]), items=len(found))
 
 
 def strains(what: str, names: Sequence[str], strain: np.ndarray, cause: str) -> Iterable[str]:
@@ -48,16 +50,16 @@ def strains(what: str, names: Sequence[str], strain: np.ndarray, cause: str) -> 
     found = np.flatnonzero(strain > LARGEST_STRAIN)
     if len(found):
         worst = found[np.argmax(strain[found])]
-        yield (f"{what} {names[worst]!r}{_others(len(found) - 1)}: {cause} strain of {strain[worst]:.3g} is above "
-               "10 %; the models are for small strains, check the units")
+        yield Note("strain_implausible", what=what, name=names[worst], others=_others(len(found) - 1), cause=cause,
+                   strain=float(strain[worst]), items=len(found))
 
 
 def warn_of_reference(key: str, reference_temperature_K: float) -> None:
     """Warn of a reference temperature that looks like degrees Celsius."""
     if reference_temperature_K < LEAST_REFERENCE_K:
         celsius, kelvin = reference_temperature_K - 273.15, reference_temperature_K + 273.15
-        warnings.warn(f"{key} = {reference_temperature_K:g} is taken as kelvin, {celsius:g} °C; for "
-                      f"{reference_temperature_K:g} °C write {kelvin:g}", stacklevel=2)
+        warnings.warn(Note("reference_in_kelvin", key=key, given=reference_temperature_K, celsius=celsius,
+                           kelvin=kelvin), stacklevel=2)
 
 
 def axial_strains(names: Sequence[str], axial_force_N: np.ndarray, rigidity_N: np.ndarray) -> Iterable[str]:

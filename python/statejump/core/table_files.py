@@ -181,10 +181,10 @@ class Table:
             if len(row) != width:
                 if not any(map(str.strip, row)):
                     continue
-                remedy = "decimal commas need ';' between the cells, or quotes" if (
-                    self.separator == "," and len(row) == 2 * width) else None
+                commas = self.separator == "," and len(row) == 2 * width
+                remedy = "decimal commas need ';' between the cells, or quotes" if commas else None
                 raise Unreadable(code="row_of_other_length", remedy=remedy, file=self.path, line=self.line,
-                                 cells=len(row), width=width)
+                                 cells=len(row), width=width, decimal_commas=commas)
             if not any(row) or not any(map(str.strip, row)):
                 continue
             yield self.line, row
@@ -245,7 +245,8 @@ class Table:
         if value is None:
             line, column = place(index)
             what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
-            raise Unreadable(code="bad_cell", cause=what, file=self.path, line=line, column=quoted(column))
+            raise Unreadable(code="bad_cell", cause=what, file=self.path, line=line, column=quoted(column), cell=cell,
+                             reason="no_finite_number" if cell.strip() else "empty")
         return value
 
     def _without_groups(self, cells: Sequence[str], place: Place) -> list[str]:
@@ -456,7 +457,7 @@ def numbers_of(table: Table, column: Column, cells: Sequence[str], lines: Sequen
         if len(units) == 1 and all(durations):
             return table.numbers([found[1] for found in durations if found], place) * _SECONDS[units.pop()]
         if not is_iso(cells[0]):
-            raise Unreadable(code="column_without_unit_or_times", remedy=accepted(column.name, column.key, "s"),
+            raise Unreadable(code="column_without_unit_or_times", **accepted(column.name, column.key, "s"),
                              file=table.path, column=quoted(column.name))
         return seconds(cells, place, table.path)
     return column.converted(table.numbers(cells, place, empty))

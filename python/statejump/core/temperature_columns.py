@@ -73,12 +73,13 @@ def of_means(read: Read) -> Read:
                 0.5 * (read.values[:, first] + read.values[:, second]))
 
 
-def refuse(read: Read, wrong: np.ndarray, what: str) -> None:
-    """Raise Unreadable for the first invalid value."""
+def refuse(read: Read, wrong: np.ndarray, what: str, reason: str) -> None:
+    """Raise Unreadable for the first invalid value. ``reason`` is that of programs."""
     if wrong.any():
         row, column = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
         raise Unreadable(code="bad_temperature", cause=f"{read.values[row, column]:g} {what}", file=read.path,
-                         column=quoted(read.names[column]), at_s=read.time_s[row])
+                         column=quoted(read.names[column]), at_s=read.time_s[row], reason=reason,
+                         value_K=float(read.values[row, column]))
 
 
 def listed(names: tuple[str, ...]) -> str:
@@ -138,7 +139,7 @@ def _time(table: Table) -> tuple[int, Column]:
         if len(found) == 1:
             return found[0]
         said = "it must be the time" if isinstance(refused, UnknownKey) else refused.cause
-        raise Unreadable(code="first_column_no_times", cause=said, file=table.path,
+        raise Unreadable(code="first_column_no_times", cause=said, reason=refused.code, file=table.path,
                          column=quoted(table.header[0])) from None
 
 
@@ -156,7 +157,7 @@ def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
     raise Unreadable(
         code="temperature_column_without_unit",
         cause="it names no unit of temperature" if not ways else f"{quoted(ways[0][1])} is no unit of temperature",
-        file=path, column=quoted(cell), accepted=ACCEPTED,
+        file=path, column=quoted(cell), accepted=ACCEPTED, unit=ways[0][1] if ways else "",
     )
 
 
@@ -180,7 +181,7 @@ def _hdf5(path: Path) -> Read:
     if bad.any():
         place = int(np.argmax(bad))
         raise Unreadable(code="time_not_increasing", file=path, index=place, at_s=time_s[place])
-    refuse(read, ~np.isfinite(values), "is not a finite number")
+    refuse(read, ~np.isfinite(values), "is not a finite number", "not_finite")
     return read
 
 

@@ -190,11 +190,11 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
     if reference is not None:
         warn_of_reference(f"{section}reference_temperature_K", reference)
         changes = changes + (read.offset_K - reference)
-        refuse(read, read.values + read.offset_K < 0, "is below absolute zero")
+        refuse(read, read.values + read.offset_K < 0, "is below absolute zero", "below_absolute_zero")
     elif read.offset_K.any():
         raise MissingKey(f"{section}reference_temperature_K", code="reference_missing", table=read.path.name)
     refuse(read, np.abs(changes) > LARGEST_CHANGE_K,
-           f"is more than {LARGEST_CHANGE_K:g} K away from the stress-free temperature")
+           f"is more than {LARGEST_CHANGE_K:g} K away from the stress-free temperature", "change_too_large")
     changes = np.where(np.abs(changes) < SAME_TEMPERATURE_K, 0.0, changes)
     if lead_in is not None:
         time_s = np.concatenate(([0.0], time_s + float(lead_in)))

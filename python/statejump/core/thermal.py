@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from statejump import _engine
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
+from statejump.core.notes import Note
 from statejump.schema.fields import (
     CHOICE, Section, choice, definition, evolved, fields_of, numbers, parameter, rule_of, switch, text, whole,
 )
@@ -98,6 +99,12 @@ class MemberProgram:
         return MemberProgram(self.table_time_s, self.table_temperature_change_K, cycles)
 
 
+RETURNS = {
+    "return_to_reference": "set thermal.return_to_reference to true to add a return",
+    "tables_of_equal_cycles": "give all programs as tables of as many cycles to add a return",
+}
+
+
 @dataclass(frozen=True)
 class Ending:
     """The last row of a table that does not end at the reference temperature.
@@ -105,13 +112,18 @@ class Ending:
     :param time_s: time of this row [s], in the last cycle
     :param temperature_change_K: ΔT [K] at this row, of the program furthest from the reference temperature
     :param return_s: duration of the added return [s]; 0: none is added
-    :param remedy: the setting that adds a return
+    :param setting: the setting that adds a return: a key of ``RETURNS``
     """
 
     time_s: float
     temperature_change_K: float
     return_s: float
-    remedy: str = ""
+    setting: str = ""
+
+    @property
+    def remedy(self) -> str:
+        """What adds a return."""
+        return RETURNS.get(self.setting, "")
 
     @property
     def returns(self) -> bool:
@@ -124,12 +136,12 @@ class Ending:
         return f"the program ends at a temperature change of {self.temperature_change_K:.6g} K"
 
     @property
-    def note(self) -> str:
+    def note(self) -> Note:
         """The ending in a sentence."""
+        where = {"time_s": self.time_s, "temperature_change_K": self.temperature_change_K}
         if self.returns:
-            return (f"{self.where}: a return to the reference temperature of {self.return_s:.6g} s is added, and the "
-                    "state jump is that after it (thermal.return_to_reference)")
-        return f"{self.where}, not at the reference temperature: it has no state jump; {self.remedy}"
+            return Note("return_added", where=self.where, **where, return_s=self.return_s)
+        return Note("no_return", where=self.where, **where, remedy=self.remedy, setting=self.setting)
 
 
 def ending(
@@ -153,9 +165,9 @@ def ending(
     if abs(last) < SAME_TEMPERATURE_K:
         return None
     if not returns:
-        return Ending(cycles * lasts, last, 0.0, "set thermal.return_to_reference to true to add a return")
+        return Ending(cycles * lasts, last, 0.0, "return_to_reference")
     if len(tables) < len(programs) or any((one.cycles or cycles) != cycles for one in tables):
-        return Ending(cycles * lasts, last, 0.0, "give all programs as tables of as many cycles to add a return")
+        return Ending(cycles * lasts, last, 0.0, "tables_of_equal_cycles")
     takes = abs(last) * lasts / float(np.abs(np.diff(changes)).sum())
     if lasts < LONGEST_PERIOD_S:
         takes = min(takes, LONGEST_PERIOD_S - lasts)

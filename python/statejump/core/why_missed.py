@@ -7,6 +7,7 @@ from math import ceil, floor, inf, isinf, log10, pi, sqrt
 import numpy as np
 
 from statejump import _engine
+from statejump.core.notes import Note
 from statejump.core.run import Run
 from statejump.core.thermal import LONGEST_PERIOD_S, Thermal, range_K
 from statejump.core.units import text
@@ -37,21 +38,21 @@ def heated_too_fast(
     :param allowed_m: largest allowed difference of the models [m]
     """
     if isinf(natural_period_s):
-        return ["a motion that only friction holds has no natural period; the reduced model has no inertia: "
-                "'statejump compare --dynamic' gives it one"]
+        return [Note("friction_without_period")]
     swing = moved_m * kink(program) / program.period_s * natural_period_s / (2 * pi)
     if swing <= SHARE_TOLD * allowed_m or not allowed_m > 0 or range_K(thermal)[0] == range_K(thermal)[1]:
         return []
-    found = (f"the slowest natural period, {text(natural_period_s, 's', 3)}, is "
-             f"{natural_period_s / program.period_s:.2g} of the thermal one; undamped, corners of the temperature "
-             f"leave oscillations of {text(swing, 'm', 2)}, and the tolerance allows {text(allowed_m, 'm', 2)}: ")
     enough = program.period_s * max(swing / (SHARE_TOLD * allowed_m), 1.0)
     if not enough < LONGEST_PERIOD_S:
-        return [f"{found}no thermal.period_s up to {LONGEST_PERIOD_S:g} s is long enough; raise the damping ratios "
-                "in [dem]"]
-    enough = min(rounded_up(enough), LONGEST_PERIOD_S)
-    which = f"a table that lasts {enough:g} s" if thermal.shape == "table" else f"thermal.period_s = {enough:g}"
-    return [f"{found}{which} is long enough even so; or raise the damping ratios in [dem]"]
+        enough = inf
+        remedy = f"no thermal.period_s up to {LONGEST_PERIOD_S:g} s is long enough; raise the damping ratios in [dem]"
+    else:
+        enough = min(rounded_up(enough), LONGEST_PERIOD_S)
+        which = f"a table that lasts {enough:g} s" if thermal.shape == "table" else f"thermal.period_s = {enough:g}"
+        remedy = f"{which} is long enough even so; or raise the damping ratios in [dem]"
+    return [Note("heated_too_fast", natural_period=text(natural_period_s, "s", 3), swing=text(swing, "m", 2),
+                 share=natural_period_s / program.period_s, allowed=text(allowed_m, "m", 2), remedy=remedy,
+                 natural_period_s=natural_period_s, swing_m=swing, enough_s=enough)]
 
 
 def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: float) -> list[str]:
@@ -61,8 +62,7 @@ def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: f
     if not kinetic > 0 or not swing > SHARE_TOLD * allowed_m:
         return []
     longer = ", or set a longer thermal.period_s" if float(dem.time_s[-1]) < LONGEST_PERIOD_S else ""
-    return [f"the DEM still moves at the end, with {text(kinetic, 'J', 2)} of kinetic energy: raise the damping ratios "
-            f"in [dem]{longer}"]
+    return [Note("still_moving", energy=text(kinetic, "J", 2), longer=longer, energy_J=kinetic)]
 
 
 def rounded_up(value: float) -> float:

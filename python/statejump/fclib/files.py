@@ -48,7 +48,8 @@ def _problem(file: h5py.File) -> Problem:
     if LOCAL not in file:
         other = next((f"it holds a {what} problem ({name}), and only a local one is solved"
                       for name, what in OTHERS.items() if name in file), "it is not a file of FCLIB")
-        raise Unreadable(code="fclib_missing", cause=other, group=LOCAL)
+        raise Unreadable(code="fclib_missing", cause=other, group=LOCAL,
+                         other=next((name for name in OTHERS if name in file), None))
     group = _group(file, LOCAL)
     dimension = _number(group, "spacedim")
     if dimension not in (2, 3):

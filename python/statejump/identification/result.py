@@ -13,6 +13,7 @@ import numpy as np
 from statejump.core import libraries
 from statejump.core.errors import NotAllowed, Range, located
 from statejump.core.later import Later
+from statejump.core.notes import Note
 from statejump.core.tables import Shown, html_table, write_columns, write_csv, write_text
 from statejump.core.units import plain
 from statejump.identification import case_section
@@ -32,6 +33,9 @@ CONFIDENCE = Range(0.5, 0.999)
 BARE_MENTION = 2.0
 # Number of standard deviations, 1/sqrt(n), of the correlation of independent residuals that count as chance.
 CHANCE = 3.0
+# Reasons why a loop does not determine a parameter of another joint.
+ABSENT = {"no_stop": "the path meets no stop there", "never_slides": "the loop never slides",
+          "no_friction": "the loop needs none"}
 PARAMETER_COLUMNS = ("parameter", "unit", "estimate", "low", "high")
 MODEL_COLUMNS = ("model", "parameters", "noise", "log_likelihood", "bic", "bic_difference")
 
@@ -99,50 +103,50 @@ class Identification:
         return case_section.distributions(self.target, self.entries)
 
     @cached_property
-    def notes(self) -> list[str]:
+    def notes(self) -> list[Note]:
         """Return notes on parameters that the loop does not determine, and on doubtful results."""
         return [*self._choice(), *self._unbounded(), *self._absent(), *self._laws(), *self._extrapolated(),
                 *self._residuals()]
 
-    def _choice(self) -> list[str]:
+    def _choice(self) -> list[Note]:
         best = self.candidates[0]
         if self.fit.model.name != best.model.name:
             if best.bic < self.fit.bic - BARE_MENTION:
-                return [f"{best.model.name} fits better: its BIC is {self.fit.bic - best.bic:.1f} less"]
+                return [Note("other_joint_fits_better", better=best.model.name, less=self.fit.bic - best.bic)]
             return []
         near = [each for each in self.candidates[1:] if each.bic - best.bic < BARE_MENTION]
-        return [f"the loop does not tell {best.model.name} from {each.model.name}: BIC differs by "
-                f"{each.bic - best.bic:.1f}" for each in near]
+        return [Note("joints_alike", best=best.model.name, other=each.model.name, difference=each.bic - best.bic)
+                for each in near]
 
-    def _unbounded(self) -> list[str]:
-        sentences = []
+    def _unbounded(self) -> list[Note]:
+        sentences: list[Note] = []
         for name, interval in self.intervals.items():
             if not interval.bounded:
                 cause = self.because.get(name)
                 why = f", it depends on {cause}, which reaches the end of its range" if cause else ""
-                sentences.append(f"{name} is not identifiable from this loop{why}: {self._words(name, interval)}")
+                reason = "other_parameter" if cause else "unbounded"
+                sentences.append(self._not_identifiable(name, interval, why, reason, depends_on=cause))
         return sentences
 
-    def _laws(self) -> list[str]:
+    def _laws(self) -> list[Note]:
         """What the section has no key for."""
         if self.target in ("slider", "spring_slider"):
-            return ["the play of a case carries no force: play_m is play (1 - play_ratio)"] \
-                if self.fit.values.get("play_ratio") else []
-        return [f"{name} has no key in {case_section.TARGETS[self.target][0]}: the section leaves it out"
+            return [Note("play_carries_no_force")] if self.fit.values.get("play_ratio") else []
+        return [Note("parameter_without_key", parameter=name, section=case_section.TARGETS[self.target][0])
                 for name in ("play", "stop_stiffness") if name in self.fit.values]
 
-    def _absent(self) -> list[str]:
-        sentences = []
+    def _absent(self) -> list[Note]:
+        sentences: list[Note] = []
         for name, (model, interval) in self.limits.items():
-            why = f"the path meets no stop there (joint {model})"
-            if name == "friction":
-                why = f"the loop {'never slides' if self.model == 'linear' else 'needs none'} (joint {model})"
-            sentences.append(f"{name} is not identifiable from this loop, {why}: {self._words(name, interval)}")
+            reason = "never_slides" if self.model == "linear" else "no_friction"
+            reason = reason if name == "friction" else "no_stop"
+            why = f", {ABSENT[reason]} (joint {model})"
+            sentences.append(self._not_identifiable(name, interval, why, reason, joint=model))
         if self.model == "linear":
-            sentences.append("clearance is not identifiable from this loop: no gap is crossed")
+            sentences.append(Note("clearance_not_crossed"))
         return sentences
 
-    def _extrapolated(self) -> list[str]:
+    def _extrapolated(self) -> list[Note]:
         """Return a note that the friction limit is extrapolated, if a law of partial slip has no gross slip in the
         loop."""
         if self.fit.model.answer is MODELS["coulomb"].answer or "friction" not in self.fit.values:
@@ -150,8 +154,11 @@ class Identification:
         alone = {**self.fit.values, "preload": 0.0, "preload_stiffness": 0.0}
         reached = float(np.max(np.abs(self.fit.model.answer(alone, self.loop.displacement, self.loop.memory))))
         share = reached / self.fit.values["friction"]
-        return [] if share > 1 - 1e-9 else [
-            f"friction is extrapolated by the law of partial slip: the loop goes to {100 * share:.0f} % of it"]
+        return [] if share > 1 - 1e-9 else [Note("friction_extrapolated", percent=100 * share)]
+
+    def _not_identifiable(self, name: str, interval: Interval, why: str, reason: str, **more: str | None) -> Note:
+        return Note("not_identifiable", parameter=name, why=why, bound=self._words(name, interval), reason=reason,
+                    low=interval.low, high=interval.high, **more)
 
     def _words(self, name: str, interval: Interval) -> str:
         unit = self.loop.unit(PARAMETERS[name].dimension)
@@ -168,12 +175,11 @@ class Identification:
         total = float(left @ left)
         return float(left[1:] @ left[:-1]) / total if total else 0.0
 
-    def _residuals(self) -> list[str]:
+    def _residuals(self) -> list[Note]:
         if self.correlation * np.sqrt(self.fit.rows) <= CHANCE:
             return []
-        return [f"residuals of neighbouring rows are correlated ({self.correlation:.2f}): intervals and choice count "
-                f"{self.fit.rows} rows as {self.fit.independent_rows:.0f}; the noise is not independent or the joint "
-                "is another one"]
+        return [Note("residuals_correlated", correlation=self.correlation, rows=self.fit.rows,
+                     independent=self.fit.independent_rows)]
 
     def _rows_of_parameters(self) -> list[tuple[str, str, float, float, float]]:
         return [(name, self.loop.unit(PARAMETERS[name].dimension), self.fit.values[name], interval.low, interval.high)

@@ -107,7 +107,8 @@ def drive(
         )
     except _engine.EngineFailure as failure:
         key = next(name for name in arguments if name.startswith(failure.key or ""))
-        raise NotAllowed(key, arguments[key], failure.cause, code="law_argument_out_of_range") from None
+        raise NotAllowed(key, arguments[key], failure.cause, code="law_argument_out_of_range",
+                         needed=failure.allowed) from None
     problem = answer.pop("problem")
     if problem:
         reached = row[len(answer["slide_x_m"])]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import inf
 
 from statejump import _engine
+from statejump.core.errors import NotAllowed
 
 KINDS = ("normal", "dissipation", "friction", "tangential_velocity")
 
@@ -60,12 +61,17 @@ def names(kind: str) -> list[str]:
     return _engine.law_names(kind)
 
 
+class NoLaw(NotAllowed, ValueError):
+    """A law is unknown or cannot be used; the error is also a ValueError."""
+
+
 def law(kind: str, name: str) -> Law:
-    """Return the law of a kind with a given name. :raises ValueError: it is unknown; the message lists known names"""
+    """Return the law of a kind with a given name. :raises NoLaw: it is unknown or cannot be used"""
     for each in catalogue(kind):
         if each.name == name:
             return each
     problem = _engine.law_problem(kind, name)
     if problem:
-        raise ValueError(f"{kind}_law = {name!r} cannot be used: {problem}")
-    raise ValueError(f"{kind}_law = {name!r}, allowed is one of {', '.join(names(kind))}")
+        raise NoLaw(f"{kind}_law", name, code="bad_law", cause=problem)
+    known = names(kind)
+    raise NoLaw(f"{kind}_law", name, code="unknown_name", allowed=known, known=" or ".join(map(repr, known)))

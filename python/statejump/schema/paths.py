@@ -13,6 +13,7 @@ import attrs
 import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
+from statejump.core.notes import Note
 from statejump.schema.fields import Section, SectionType, evolved, fields_of, rule_of, section_of, tables_of
 from statejump.schema.rules import ATTACHED, suggestion
 
@@ -68,7 +69,7 @@ def current(model: type[Section], path: str, file: str = "") -> str:
     if now is None:
         return path
     where = f"{file}: " if file else ""
-    warnings.warn(f"{where}{path} is {now} now; the old place is still understood", FutureWarning, stacklevel=2)
+    warnings.warn(Note("key_moved", where=where, path=path, now=now), FutureWarning, stacklevel=2)
     return now
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from studies.paper.claims.findings import Findings
+from studies.paper.claims.reasons import Reasons, because
 from studies.paper.claims.statistics import (
     FAILS, HOLDS, IN_PART, MRAD, SIGNIFICANCE, UNTESTED, Groups, one_sided_welch, trend,
 )
@@ -60,8 +61,8 @@ class Measure:
     without: float
     larger: bool
     label: str
-    reduces: str
-    fails: Callable[[list[float], float], str]
+    reduces: Reasons
+    fails: Callable[[list[float], float], Reasons]
 
 
 def _change(means: list[float], before: float) -> str:
@@ -73,38 +74,41 @@ def measures(f: Findings) -> tuple[Measure, ...]:
     """Return the measures that the runs can test."""
     turn = f"both links together can still rotate by c/|AC| = {f.free_turn_rad * MRAD:.2f} mrad within the play"
 
-    def friction_fails(means: list[float], before: float) -> str:
+    def friction_fails(means: list[float], before: float) -> Reasons:
         if max(means) > before and not f.damped:
-            return "friction dissipates energy; without it the speed of the impacts stays and moves the joint farther"
-        return "less friction does not always give a smaller jump"
+            return because(speed_stays="friction dissipates energy; without it the speed of the impacts stays and "
+                                       "moves the joint farther")
+        return because(not_always="less friction does not always give a smaller jump")
 
-    def stiffness_fails(means: list[float], before: float) -> str:
+    def stiffness_fails(means: list[float], before: float) -> Reasons:
         share = before / f.free_turn_rad
-        return (f"the jump is {share:.2g} times c/|AC|, the rotation that the play allows, and links do not change "
-                "the play")
+        return because(play_stays=f"the jump is {share:.2g} times c/|AC|, the rotation that the play allows, and links "
+                                  "do not change the play")
 
     return (
         Measure("reducing friction", f.jump_by_friction, f.friction_coefficient, False, "μ",
-                "less friction leaves less force that holds the joint where it slid", friction_fails),
+                because(less_force="less friction leaves less force that holds the joint where it slid"),
+                friction_fails),
         Measure("stiffer components", f.jump_by_stiffness, 1.0, True, "section over that of the case",
-                "stiffer links give less under the forces of contact", stiffness_fails),
+                because(stiffer="stiffer links give less under the forces of contact"), stiffness_fails),
         Measure("pre-stressed torsion springs" if f.spring_bias_rad else "torsion springs", f.jump_by_spring,
                 f.jump_by_spring.values[0], True, "K_M in N m/rad",
-                f"a spring between the links holds the flare angle; {turn}, which does not load the spring",
-                lambda means, before: f"a spring between the links holds the flare angle, but {turn}, which does "
-                                      "not load the spring"),
+                because(angle_held=f"a spring between the links holds the flare angle; {turn}, which does not load the "
+                                   "spring"),
+                lambda means, before: because(rotation_in_play="a spring between the links holds the flare angle, but "
+                                                               f"{turn}, which does not load the spring")),
     )
 
 
-def _why(m: Measure, verdict: str, size: Groups) -> str:
+def _why(m: Measure, verdict: str, size: Groups) -> Reasons:
     if verdict == UNTESTED:
-        return "no value of the study lies on the side of the measure"
+        return because(no_value="no value of the study lies on the side of the measure")
     means = [float(np.mean(runs)) for runs in _taken(size, m.without, m.larger)]
     before = float(np.mean(size.at(m.without)))
     reason = m.reduces if verdict == HOLDS else m.fails(means, before)
-    if verdict == IN_PART:
-        reason = f"the measure has an effect at some of its values only; {reason}"
-    return f"{_change(means, before)}: {reason}"
+    some = because(some_values="the measure has an effect at some of its values only")
+    parts, codes = ([some, reason], some.codes + reason.codes) if verdict == IN_PART else ([reason], reason.codes)
+    return Reasons(f"{_change(means, before)}: {'; '.join(parts)}", codes)
 
 
 def control(f: Findings) -> list[Claim]:
@@ -126,7 +130,7 @@ def control(f: Findings) -> list[Claim]:
             "The state jump is controlled by pre-stressed springs (conclusion c)",
             "the spring of this case is free at the ideal position, as the paper's: it is not pre-stressed",
             UNTESTED,
-            "needs torsion_spring.bias_rad, which makes the path unique",
+            because(no_bias="needs torsion_spring.bias_rad, which makes the path unique"),
             f"*{UNTESTED}* unless the case has a bias",
         ))
     return claims

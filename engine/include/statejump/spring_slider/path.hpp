@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "statejump/spring_slider/model.hpp"
@@ -139,10 +138,10 @@ void solve(const SpringSlider& model, const thermal::Program& program, Path& pat
 Path solve(const SpringSlider& model, const thermal::Program& program,
            const Eigen::Ref<const Eigen::VectorXd>& times);
 
-/// Replaces the temperature changes in events, samples and warnings by those of the program
-/// `reported` at the same times. If the expansion coefficient depends on temperature, the solved
-/// program is thermal strain over a constant coefficient, and `reported` the temperature. Segments
-/// keep the solved values.
+/// Replaces the temperature changes in events, samples and the largest compression by those of the
+/// program `reported` at the same times. If the expansion coefficient depends on temperature, the
+/// solved program is thermal strain over a constant coefficient, and `reported` the temperature.
+/// Segments keep the solved values.
 void report_temperatures_of(thermal::Program reported, Path& path);
 
 /// Position x [m] at ΔT [K] within the segment. It is constant in a stick and at a stop; otherwise
@@ -172,8 +171,16 @@ PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
 /// = elastic energy + dissipation is a check, not a definition.
 double thermal_work(const SpringSlider& model, const Segment& segment, double temperature_change);
 
-/// Warnings about a path, one sentence each. The function warns if an axial force exceeds the Euler
-/// load of an unguided link with square section. Otherwise the result is empty.
-std::vector<std::string> warnings(const Path& path);
+/// Axial force above the Euler load of an unguided link with square section.
+struct EulerLoadExceeded {
+  double axial_force;         ///< Largest compression [N].
+  double temperature_change;  ///< ΔT [K] at this force.
+  double clamped;             ///< Euler load [N] with clamped ends.
+  double pinned;              ///< Euler load [N] with pinned ends.
+  bool operator==(const EulerLoadExceeded&) const = default;
+};
+
+/// The largest compression of a path, if it exceeds the Euler load with pinned ends.
+std::optional<EulerLoadExceeded> exceeded_euler_load(const Path& path);
 
 }  // namespace statejump::spring_slider

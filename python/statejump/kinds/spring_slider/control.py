@@ -14,6 +14,7 @@ from statejump.control.study import (
 )
 from statejump.core.engine_failures import engine
 from statejump.core.errors import StatejumpError
+from statejump.core.notes import Note
 from statejump.core.progress import OnProgress, one_of
 from statejump.kinds import require
 from statejump.kinds.protocol import DemModel
@@ -183,12 +184,12 @@ def control(
     result = Study(MEASURE, "m", "µm", 1e6, RESULTS, now.size_m, wanted, "|State jump| [µm]", LINES)
     result.sweeps = _sweeps(case)
     if wanted is None:
-        result.sentences.append("The case has no jump: there is nothing to control.")
+        result.sentences.append(Note("nothing_to_control", what="The case has no jump"))
     else:
         for sweep in result.sweeps:
             _find_ranges(case, sweep, wanted)
         _recommend(case, result, wanted)
-    result.remarks += [*reduced.solve(case, np.array([0.0])).warnings, *reduced.warnings(case)]
+    result.remarks += [*reduced.buckling(reduced.solve(case, np.array([0.0]))), *reduced.warnings(case)]
     if with_dem:
         _check_by_dem(case, result, on_progress)
     return result
@@ -209,10 +210,7 @@ def _recommend(case: SpringSliderCase, result: Study, wanted: float) -> None:
     if spring is None:
         largest = highest(case, PRELOAD)
         result.recommendation["preload_stiffness_N_per_m"] = None
-        result.sentences.append(
-            f"No preload spring up to {largest:g} N/m, the largest that a case may have, keeps the jump "
-            f"at or below {asked}."
-        )
+        result.sentences.append(Note("no_preload", largest_N_per_m=largest, wanted=asked, wanted_m=wanted))
         return
     result.recommendation.update(
         preload_stiffness_N_per_m=spring.stiffness_N_per_m, jump_with_it_m=spring.jump_m, found_by=spring.by
@@ -221,20 +219,14 @@ def _recommend(case: SpringSliderCase, result: Study, wanted: float) -> None:
     sweep.recommended = spring.stiffness_N_per_m
     sweep.insert(_row(case, PRELOAD, spring.stiffness_N_per_m))
     if spring.by == "none":
-        result.sentences.append(
-            f"No preload spring is needed: without one the jump is {number(spring.jump_m * 1e6)} µm, "
-            f"not above {asked}."
-        )
+        result.sentences.append(Note("no_preload_needed", jump=f"{number(spring.jump_m * 1e6)} µm", wanted=asked))
         return
     how = {
         "closed form": "closed form f/jump − k",
         "bisection": "bisection, for the cycle does not end sliding and the closed form does not hold",
     }[spring.by]
-    result.sentences.append(
-        f"The smallest preload spring that keeps the jump at or below {asked} has "
-        f"{spring.stiffness_N_per_m:.6g} N/m ({how}); solved with it, the jump is "
-        f"{spring.jump_m * 1e6:.6g} µm."
-    )
+    result.sentences.append(Note("smallest_preload", wanted=asked, stiffness_N_per_m=spring.stiffness_N_per_m, how=how,
+                                 jump=f"{spring.jump_m * 1e6:.6g} µm"))
 
 
 def _check_by_dem(case: SpringSliderCase, result: Study, on_progress: OnProgress) -> None:

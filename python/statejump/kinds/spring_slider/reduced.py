@@ -9,6 +9,7 @@ import numpy as np
 
 from statejump import _engine
 from statejump.kinds.limits import WHOLE_HISTORY
+from statejump.core.notes import Note
 from statejump.core.progress import OnProgress
 from statejump.core.run import Events, Run
 from statejump.core.thermal import program
@@ -36,24 +37,27 @@ def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
 
 def warnings(case: SpringSliderCase) -> list[str]:
     """Return warnings about settings of the case that the reduced model ignores."""
-    said = []
+    said: list[str] = []
     start = spring_slider(case).start_displacement_m
     if start in (-case.joint.clearance_minus_m, case.joint.clearance_plus_m):
-        said.append(
-            "the preload force holds the block at a stop at the start; the stop is rigid in the reduced model, in the "
-            "DEM it gives, so that the block slips as its load changes"
-        )
+        said.append(Note("starts_at_stop"))
     changes = [
         abs(case.clearance_m(side, change) - case.clearance_m(side, 0.0))
         for side in (-1, 1)
         for change in case.temperature_range_K
     ]
     if max(changes) > 0:
-        said.append(
-            "the reduced model keeps the clearances of the reference temperature; expansion of pad and "
-            f"slot changes them by up to {max(changes):.3g} m in the DEM"
-        )
+        said.append(Note("clearances_kept", change_m=float(max(changes))))
     return said
+
+
+def buckling(path: _engine.SpringSliderPath) -> list[Note]:
+    """Return the warning that the bar would buckle if nothing guided it."""
+    found = path.exceeded_euler_load
+    if found is None:
+        return []
+    ends = "clamped-clamped" if found["axial_force_N"] > found["clamped_N"] else "pinned-pinned"
+    return [Note("euler_load_exceeded", ends=ends, **found)]
 
 
 def solve(case: SpringSliderCase, times_s: np.ndarray | None = None) -> _engine.SpringSliderPath:
@@ -106,8 +110,7 @@ def _without_what_is_between(case: SpringSliderCase, run: Run) -> Run:
     shown, cycles = cycles_shown(case), case.thermal.cycles
     first, last = shown * case.period_s, (cycles - shown) * case.period_s
     events = Events([event for event in run.events if event.time_s <= first or event.time_s > last])
-    said = (f"history and events are those of the first and the last {shown:,} of {cycles:,} cycles; all others were "
-            "computed and left out")
+    said = Note("cycles_left_out", shown=shown, cycles=cycles)
     return replace(run, events=events, warnings=(*run.warnings, said))
 
 
@@ -119,7 +122,7 @@ def quick(case: SpringSliderCase) -> Run:
 def _run_at(case: SpringSliderCase, times_s: np.ndarray) -> Run:
     path = solve(case, times_s)
     columns = path.sample(np.asarray(times_s, dtype=float))
-    return result.reduced_run(case, path, columns, (*path.warnings, *warnings(case)),
+    return result.reduced_run(case, path, columns, (*buckling(path), *warnings(case)),
                               lambda times: _run_at(case, times))
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from statejump.core.charts import TEMPERATURE, TIME, Axis, Chart
+from statejump.core.notes import Note
 from statejump.core.run import AT_STOP, Event, Run
 from statejump.core.start import FRICTIONLESS
 from statejump.core.tables import Shown
@@ -91,14 +92,14 @@ def event_reason(case: SpringSliderCase, event: Event, model: str, runs: Mapping
     """Return the reason why only one of the models reports an event; "" if the reason is unknown."""
     if event.kind in ("stop_unloaded", "force_sign_change", "cycle_end", "play_opened", "play_closed") and (
             model == "reduced"):
-        return "a stage of the reduced model; no contact of the DEM changes its state"
+        return Note("stage_of_reduced_model")
     if model != "dem" or event.kind not in ("stick", "slip") or event.joint != "floor":
         return ""
     run = runs[model]
     nearest = int(np.argmin(np.abs(run.time_s - event.time_s)))
     if AT_STOP not in run.contacts["state"].values[nearest]:
         return ""
-    return "the stop carries: a rigid one holds the block still, that of the DEM gives and lets it creep on the floor"
+    return Note("stop_carries")
 
 
 def charts(case: SpringSliderCase) -> list[Chart]:

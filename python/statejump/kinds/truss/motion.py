@@ -12,6 +12,7 @@ from statejump import _engine
 from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted, NotAllowed, StatejumpError
+from statejump.core.notes import Note
 from statejump.core.start import FRICTIONLESS
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.case import TrussCase
@@ -50,28 +51,22 @@ class TrussMotion:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences about times at which reactions are not unique."""
-        found = []
+        found: list[str] = []
+        inexact = {"inexact": self.inexact_steps, "steps": self.steps, "time_step_s": self.time_step_s}
         if self.inexact_steps and self.regularised:
-            found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
-                         f"{self.time_step_s:.4g} s are stable with: set motion.steps_per_cycle to more")
+            found.append(Note("contacts_too_stiff", **inexact))
         elif self.inexact_steps and self.equal:
-            found.append(f"{self.inexact_steps} of {self.steps} steps had no solution as they were: they were damped "
-                         f"and taken in parts down to {self.time_step_s:.4g} s; set motion.steps_per_cycle to more to "
-                         "follow what swings")
+            found.append(Note("steps_damped", **inexact))
         elif self.inexact_steps:
-            found.append(f"in {self.inexact_steps} of {self.steps} steps, as short as steps can be, displacements are "
-                         "off by more than motion.displacement_tolerance_m")
+            found.append(Note("steps_inexact", **inexact))
         if self.jammed is not None:
             time_s, (joint,) = self.jammed
-            found.append(f"at {time_s:.6g} s joint {joint!r} could not slide on: no normal force keeps it closed with "
-                         "the friction that comes with it, or several do; velocities jump, to one of several motions "
-                         "(Painlevé's paradox)")
+            found.append(Note("joint_jammed", time_s=time_s, joint=joint))
         if self.undetermined is None:
             return tuple(found)
         time_s, joints = self.undetermined
         named = ", ".join(repr(name) for name in joints)
-        found.append(f"from {time_s:.6g} s on rigid contacts of joints {named} hold each other: their forces are one "
-                     "of several solutions, the motion is the same for all")
+        found.append(Note("reactions_not_unique", time_s=time_s, named=named, joints=tuple(joints)))
         return tuple(found)
 
 

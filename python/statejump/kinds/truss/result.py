@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from statejump.core import plausibility
+from statejump.core.notes import Note
 from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
@@ -317,8 +318,7 @@ def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
     if not together:
         return ()
     increments = "1 increment" if together == 1 else f"{together} increments"
-    return (f"in {increments} several joints changed their status: slip that turned round between two of these changes "
-            "is not seen; reduced.locate_events = true locates them",)
+    return (Note("changes_together", increments=increments, number=int(together)),)
 
 
 def motion_run(case: TrussCase, motion: TrussMotion) -> Run:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from statejump.core.notes import Note
 from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.case import TrussCase
@@ -20,11 +21,12 @@ NO_FORCE = 1e-6
 
 def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
     """Return a sentence about the nodes that hang slack at a sample."""
-    names = [repr(case.node[node].name) for node in np.flatnonzero(hung.any(axis=0))]
+    hung_nodes = np.flatnonzero(hung.any(axis=0))
+    names = [repr(case.node[node].name) for node in hung_nodes]
     if not names:
         return ()
-    return (f"node{'s' if len(names) > 1 else ''} {listed(names)}: hanging slack in the play of joints, where no "
-            "model determines a position; compared only where forces act on them",)
+    named = f"node{'s' if len(names) > 1 else ''} {listed(names)}"
+    return (Note("slack_not_compared", named=named, nodes=tuple(case.node[node].name for node in hung_nodes)),)
 
 
 def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:

@@ -14,6 +14,7 @@ from statejump.core import libraries
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import ABSENT, NotAllowed, Range, StatejumpError
 from statejump.core.later import Later
+from statejump.core.notes import Note
 from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.units import plain
@@ -158,11 +159,10 @@ def study(
     notes = [*others(found, finer, checked, asked), *_surface(found, tables), *run.warnings]
     change = abs(asked.jump(finer) - jump)
     if change > max(RESOLVED * abs(jump), rounding):
-        notes.append(f"the jump is not resolved: with twice the increments it changes by {change:.2g} {asked.unit}; "
-                     "more reduced.increments_per_branch are needed, or there is none")
+        notes.append(Note("jump_not_resolved", change=change, unit=asked.unit))
     shares = None
     if not _jumps(found, asked, jump):
-        notes.append("the output does not jump: no joints are ranked, no sensitivities are computed")
+        notes.append(Note("nothing_ranked"))
     else:
         with phase("contributions of joints") as on_progress:
             shares = _shares(found, asked, on_progress, tables, notes)
@@ -171,8 +171,7 @@ def study(
                 asked_of = sensitivities(found, asked, each=each, step=step, on_progress=on_progress)
             tables["sensitivities"] = rows.sensitivity_rows(asked_of, jump)
             if any(row.verdict == "not differentiable" for row in asked_of):
-                notes.append("the jump has a kink here in some parameters, its slopes on both sides differ: see the "
-                             "verdicts of the sensitivities")
+                notes.append(Note("jump_has_kink"))
     record = Answers(asked.name, asked.text, asked.unit, checked.word, checked.text, notes,
                      _numbers(found, checked, asked, jump, shares), tables)
     return TrussAnswers(case, record, run, asked, checked, shares)

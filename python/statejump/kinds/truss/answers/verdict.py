@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from statejump.core.notes import Note
 from statejump.core.units import plain
 from statejump.kinds.truss.answers.jumps import rounding_m
 from statejump.kinds.truss.answers.outputs import Output
@@ -110,5 +111,6 @@ def others(coarse: TrussPath, finer: TrussPath, checked: Verdict, output: Output
     if not going.any():
         return []
     node = int(np.argmax(going))
-    return [f"{output.short} settles, other nodes still move: node {finer.truss.nodes.names[node]} by "
-            f"{plain(float(going[node]), 'm', 4)} in cycle {len(each)}"]
+    moved_m = float(going[node])
+    return [Note("others_move", output=output.short, node=finer.truss.nodes.names[node], moved=plain(moved_m, "m", 4),
+                 moved_m=moved_m, cycle=len(each))]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from statejump.control.study import DesignChoices, Line, Study, Sweep, check_wanted, number, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
+from statejump.core.notes import Note
 from statejump.core.progress import OnProgress, one_of
 from statejump.core.units import plain
 from statejump.kinds.truss.answers.jumps import most_moved, quick_path, rounding_m
@@ -69,7 +70,7 @@ def control(
             result.remarks += _remarks(search, now, wanted)
         part(1.0)
     if wanted is None:
-        result.sentences.append("The node does not jump: there is nothing to control.")
+        result.sentences.append(Note("nothing_to_control", what="The node does not jump"))
     else:
         result.recommendation["candidates"] = [
             search.found or {"parameter": search.sweep.parameter, "value": None, "monotone": not search.turns}
@@ -78,8 +79,7 @@ def control(
         if choices.scale:
             _best(result, "best_scale", [search for search in searches if not search.candidate.is_spring])
         elif not choices.add_spring:
-            result.sentences.append("No key is named best, for not all of them are free to a designer: --free KEY (in "
-                                    "Python scale=[KEY]) names those that are.")
+            result.sentences.append(Note("no_key_free"))
     return result
 
 
@@ -92,7 +92,7 @@ def _subject(search: Search) -> str:
     return f"A {label[0].lower()}{label[1:]}" if search.candidate.is_spring else label
 
 
-def _sentence(search: Search, wanted: float) -> str:
+def _sentence(search: Search, wanted: float) -> Note:
     low, high = (_shown(search, row.value) for row in (search.sweep.rows[0], search.sweep.rows[-1]))
     asked, subject = plain(wanted, "m"), _subject(search)
     if search.value is None:
@@ -100,40 +100,38 @@ def _sentence(search: Search, wanted: float) -> str:
         least = min(reached, key=lambda row: float(row.results["jump_m"] or 0.0), default=None)
         text = "" if least is None else (f"; the smallest jump of them is {plain(least.results['jump_m'], 'm')}, with "
                                          f"{_shown(search, least.value)}")
-        return f"{subject}: no scanned value from {low} to {high} keeps the jump at or below {asked}{text}."
+        return Note("no_value_found", subject=subject, low=low, high=high, wanted=asked, least=text)
     found = search.found
     if search.value == search.candidate.own:
-        return f"{subject}: nothing is needed, the jump is {plain(found['jump_with_it_m'], 'm')} without."
-    text = f"{subject}: {_shown(search, search.value)} is the smallest change that keeps the jump at or below {asked}"
-    text += f" ({found['found_by']}); solved with it, the jump is {plain(found['jump_with_it_m'], 'm')}"
+        return Note("nothing_needed", subject=subject, jump=plain(found["jump_with_it_m"], "m"))
     elasticity, verdict = found["elasticity"], found["verdict"]
     if verdict == "smooth":
-        text += (f". There the path is smooth: 1 % more changes the jump by {number(elasticity, 3)} %, "
-                 "by differences of 1 and of 0.5 %")
+        derivative = (f"the path is smooth: 1 % more changes the jump by {number(elasticity, 3)} %, by differences of "
+                      "1 and of 0.5 %")
+    elif verdict.startswith("failed"):
+        derivative = f"the derivative {verdict}"
     else:
-        text += f". There the derivative is {verdict}: only solving again tells" if not verdict.startswith("failed") \
-            else f". There the derivative {verdict}"
-    return text + "."
+        derivative = f"the derivative is {verdict}: only solving again tells"
+    return Note("smallest_change", subject=subject, value=_shown(search, search.value), wanted=asked,
+                found_by=found["found_by"], jump=plain(found["jump_with_it_m"], "m"), derivative=derivative,
+                verdict=verdict, elasticity=elasticity)
 
 
-def _remarks(search: Search, now: Jump, wanted: float) -> list[str]:
-    found, subject, said = search.found, search.candidate.parameter, []
+def _remarks(search: Search, now: Jump, wanted: float) -> list[Note]:
+    found, subject, said = search.found, search.candidate.parameter, list[Note]()
     if search.turns:
         at = ", ".join(number(turn) for turn in search.turns)
-        said.append(f"{subject}: the jump is not monotone, it turns near {at}; a range that is narrower than the "
-                    "scan may be missed")
+        said.append(Note("jump_not_monotone", parameter=subject, at=at, turns=tuple(search.turns)))
     failed = sum(bool(row.note) for row in search.sweep.rows)
     if failed:
-        said.append(f"{subject}: with {failed} scanned value(s) the truss has no path, see the notes in control.csv")
+        said.append(Note("values_without_path", parameter=subject, failed=failed))
     if found.get("leaps"):
-        said.append(f"{subject}: the jump leaps across the bound at the value found, or a truss has no path there")
+        said.append(Note("jump_leaps", parameter=subject))
     if found and search.value != search.candidate.own and not found["joints_go_as_in_the_case"]:
-        said.append(f"{subject}: with it joints stick, slip or touch otherwise than in the case, whose own "
-                    "sensitivities do not tell what it does")
+        said.append(Note("joints_differ", parameter=subject))
     if found and abs(found["jump_with_twice_the_increments_m"] - found["jump_with_it_m"]) > RESOLVED * wanted:
-        said.append(f"{subject}: with twice the increments a branch the jump is "
-                    f"{plain(found['jump_with_twice_the_increments_m'], 'm')}: more reduced.increments_per_branch are "
-                    "needed")
+        said.append(Note("increments_too_few", parameter=subject,
+                         jump=plain(found["jump_with_twice_the_increments_m"], "m")))
     return said
 
 
@@ -149,5 +147,5 @@ def _best(result: Study, name: str, searches: Sequence[Search]) -> None:
     if best.value == best.candidate.own:
         return
     what = "softest spring" if best.candidate.is_spring else "smallest relative change"
-    result.sentences.append(f"Best of {len(searches)}, {len(reaching)} of which reach the bound, is the {what}: "
-                            f"{best.candidate.parameter} with {_shown(best, best.value)}.")
+    result.sentences.append(Note("best_of_several", asked=len(searches), reaching=len(reaching), what=what,
+                                 parameter=best.candidate.parameter, value=_shown(best, best.value)))

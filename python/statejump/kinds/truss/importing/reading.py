@@ -64,8 +64,8 @@ def read(path: Path, form: str | None = None, bars: Path | None = None, options:
     return deck
 
 
-def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made, str | None]:
-    """Return the case of a document, and a hint if some parts of the truss have no support.
+def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made, NoSupport | None]:
+    """Return the case of a document, and the error with a remedy if some parts of the truss have no support.
 
     For all other checks, one node of each unsupported part is held.
 
@@ -75,7 +75,8 @@ def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made
     try:
         return parse(document), None
     except NoSupport as found:
-        loose, hint = set(found.loose), f"{found}; {REMEDY}"
+        loose, hint = set(found.loose), found
+        hint.remedy = REMEDY
     axes = list("xyz"[:document["truss"]["dimension"]])
     nodes = [{**node, "fixed": axes} if node["name"] in loose else node for node in document["node"]]
     return parse({**document, "node": nodes}), hint

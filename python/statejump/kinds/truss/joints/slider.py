@@ -11,6 +11,7 @@ import numpy as np
 
 from statejump.core import physics
 from statejump.core.errors import NotAllowed
+from statejump.core.notes import Note
 from statejump.core.start import FRICTIONLESS
 from statejump.core.units import text
 from statejump.kinds.truss.arrays import GROUND, References, columns
@@ -333,9 +334,8 @@ class SliderType(AlongAxis[Slider, Sliders]):
         most = int(np.argmax(give))
         if not give[most] > told_m:
             return []
-        return [f"the reduced model holds slider {joints.names[between[most]]!r} rigidly across its axis, in the DEM "
-                f"its pad bends there by up to {text(float(give[most]), 'm', 2)}: raise pad_radius_m or "
-                "young_modulus_Pa of the sliders between two nodes"]
+        return [Note("pads_bend", joint=joints.names[between[most]], bent=text(float(give[most]), "m", 2),
+                     bent_m=float(give[most]))]
 
     def _start_slip_m(self, truss: ResolvedTruss, joints: Sliders, slide_m: np.ndarray, friction_N: np.ndarray
                       ) -> np.ndarray:
