@@ -159,9 +159,8 @@ struct MindlinEnergy {
 /// @param limit mu F_N [N]; <= 0 means no friction; the force is then exactly zero
 /// @param history on input F0 (in the current tangent plane) and k0, on output F1 and k
 /// Limits: those of spring_step().
-[[gnu::always_inline]] inline MindlinEnergy mindlin_step(double stiffness, double limit,
-                                                         const Vector3& slide,
-                                                         ContactHistory& history) {
+inline MindlinEnergy mindlin_step(double stiffness, double limit, const Vector3& slide,
+                                  ContactHistory& history) {
   const SpringBefore<Single> before =
       spring_before<Single>(history.tangential_force, history.tangential_stiffness, slide);
   if (!(stiffness > 0.0) || !(limit > 0.0)) {
