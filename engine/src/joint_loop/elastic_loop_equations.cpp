@@ -47,8 +47,8 @@ Parameters parameters(const linkage::Linkage& model, double temperature_change) 
                                (p.r2.rate + sign * p.r1.rate) / sum);  // of the root, relative
   const kernel::ElasticPair pair =
       kernel::elastic_pair(bc.young_modulus, bc.poisson_ratio, ab.young_modulus, ab.poisson_ratio);
-  const double hertz = 4.0 / 3.0 * pair.effective_young_modulus * root;
-  const double shear = 8.0 * pair.effective_shear_modulus * root;
+  const double hertz = numerics::hertz_stiffness(pair.effective_young_modulus, root);
+  const double shear = numerics::mindlin_stiffness_per_root(pair.effective_shear_modulus, root);
   p.hertz = {hertz, hertz * growth};
   p.shear = {shear, shear * growth};
   return p;

@@ -9,9 +9,19 @@ namespace statejump::numerics {
 // DEM computes the same contact from the contact radius; both are written separately, so that their
 // comparison tests them.
 
+/// Hertz's stiffness K = 4/3 E* √R [N/m^1.5].
+/// @param modulus E* [Pa]; @param root √R [m^0.5]
+inline double hertz_stiffness(double modulus, double root) {
+  return 4.0 / 3.0 * modulus * root;
+}
+/// Mindlin's tangential stiffness over √δ, 8 G* √R [N/m^1.5]. @param modulus G* [Pa]
+inline double mindlin_stiffness_per_root(double modulus, double root) {
+  return 8.0 * modulus * root;
+}
+
 /// Hertz's force F = K δ^1.5 [N]. A negative depth gives the mirrored tension, which only serves
 /// root finding: it shows that contact was lost.
-/// @param stiffness K = 4/3 E* √R [N/m^1.5]
+/// @param stiffness K [N/m^1.5]
 inline double hertz_force(double stiffness, double depth) {
   return stiffness * depth * std::sqrt(std::abs(depth));
 }

@@ -65,30 +65,43 @@ inline void validate(const ContactParameters& parameters) {
 
 /// Viscous damping c = 2 zeta sqrt(m k) [N s/m] of a contact spring at its current stiffness.
 /// @param damping_ratio zeta [-], @param mass m [kg], @param stiffness k [N/m]
-inline double viscous_damping(double damping_ratio, double mass, double stiffness) {
-  return 2.0 * damping_ratio * std::sqrt(mass * stiffness);
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Number viscous_damping(
+    const typename A::Number& damping_ratio, const typename A::Number& mass,
+    const typename A::Number& stiffness) {
+  return 2.0 * damping_ratio * A::root(mass * stiffness);
 }
 
 /// Normal force with its viscous part [N], clipped at 0: the bodies never pull on each other.
 /// @param force elastic force F [N], @param damping c [N s/m]
 /// @param approach_speed [m/s]
-inline double damped_normal_force(double force, double damping, double approach_speed) {
-  return std::max(0.0, force + damping * approach_speed);
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Number damped_normal_force(
+    const typename A::Number& force, const typename A::Number& damping,
+    const typename A::Number& approach_speed) {
+  return A::larger(typename A::Number{}, force + damping * approach_speed);
 }
 
 /// Adds the viscous force -c v_t of a sticking spring and projects the sum onto the disc of radius
 /// mu F_N. The projection is monotone, so the remaining viscous force still opposes v_t.
 /// @param damping c [N s/m], @param limit mu F_N [N], @param velocity v_t [m/s]
 /// @param force on input the force of the spring [N], at most `limit`; on output the sum
+/// @param counts contacts whose result is used
 /// @return power dissipated by the viscous part [W], >= 0
-inline double add_tangential_damping(double damping, double limit, const Vector3& velocity,
-                                     Vector3& force) {
-  const Vector3 spring = force;
-  force -= damping * velocity;
-  const double squared = force.squaredNorm();
-  if (!(squared > limit * limit)) return damping * velocity.squaredNorm();
-  force *= limit / std::sqrt(squared);
-  return std::max(0.0, (spring - force).dot(velocity));
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Number add_tangential_damping(
+    const typename A::Number& damping, const typename A::Number& limit,
+    const typename A::Vector& velocity, const typename A::Mask& counts, typename A::Vector& force) {
+  using Number = typename A::Number;
+  const typename A::Vector spring = force;
+  force = force - velocity * damping;
+  const Number squared = A::squared(force);
+  const typename A::Mask over = squared > limit * limit;
+  if (A::any(over & counts)) {
+    force = A::select(over, force * (limit / A::root(squared)), force);
+  }
+  return over ? A::larger(Number{}, A::dot(spring - force, velocity))
+              : damping * A::squared(velocity);
 }
 
 /// Input and output of a dissipation law in one contact_step().
@@ -119,8 +132,11 @@ struct ImpactDamping {
 /// @param history memory of this contact, updated; the caller has rotated it into the current
 ///     tangent plane
 template <class Laws>
-ContactResponse contact_step(Laws& laws, const ContactParameters& parameters, const Vector3& normal,
-                             double depth, double time_step, ContactHistory& history) {
+[[gnu::always_inline]] inline ContactResponse contact_step(Laws& laws,
+                                                           const ContactParameters& parameters,
+                                                           const Vector3& normal, double depth,
+                                                           double time_step,
+                                                           ContactHistory& history) {
   const auto normal_state = laws.normal();
   const Vector3& n = normal;
   const Vector3& velocity = laws.velocity();
@@ -160,7 +176,8 @@ ContactResponse contact_step(Laws& laws, const ContactParameters& parameters, co
     const double damping = viscous_damping(parameters.tangential_damping_ratio,
                                            parameters.effective_mass, tangential_stiffness);
     damping_dissipation +=
-        add_tangential_damping(damping, limit, tangential_velocity, tangential_force) * time_step;
+        add_tangential_damping(damping, limit, tangential_velocity, true, tangential_force) *
+        time_step;
   }
 
   return {normal_force,
@@ -192,8 +209,9 @@ struct HertzMindlinLaws {
   double tangential_stiffness(const HertzState& state) const {
     return mindlin_stiffness(parameters.elastic.effective_shear_modulus, state.contact_radius);
   }
-  MindlinEnergy friction(double stiffness, double limit, double, const Vector3& velocity,
-                         ContactHistory& history) const {
+  [[gnu::always_inline]] MindlinEnergy friction(double stiffness, double limit, double,
+                                                const Vector3& velocity,
+                                                ContactHistory& history) const {
     return mindlin_step(stiffness, limit, velocity * kinematics.time_step, history);
   }
   const Vector3& friction_force(const ContactHistory& history) const {
@@ -230,8 +248,9 @@ struct HertzMindlinLaws {
 /// @param history memory of this contact, updated; the caller has rotated it into the current
 ///     tangent plane. A gap clears it and counts the energy of the spring as friction loss.
 /// Limits: those of hertz() and mindlin_step(); no rolling or twisting resistance.
-inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
-                                     const ContactKinematics& kinematics, ContactHistory& history) {
+[[gnu::always_inline]] inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
+                                                            const ContactKinematics& kinematics,
+                                                            ContactHistory& history) {
   const detail::HertzMindlinLaws laws{parameters, kinematics};
   return contact_step(laws, parameters, kinematics.normal, kinematics.penetration_depth,
                       kinematics.time_step, history);

@@ -3,9 +3,54 @@
 
 #include <cmath>
 
+#include "statejump/kernel/arithmetic.hpp"
 #include "statejump/kernel/vector.hpp"
 
 namespace statejump::kernel {
+
+/// Component of v perpendicular to a unit axis; same unit as v.
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Vector perpendicular_part(
+    const typename A::Vector& v, const typename A::Vector& axis) {
+  return v - axis * A::dot(v, axis);
+}
+
+/// Whether two normals are far enough from opposite ones for transport(): |n_old + n_new| > 1e-8.
+/// Below, rounding determines the direction of the sum.
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Mask have_rotation(const typename A::Vector& n_old,
+                                                             const typename A::Vector& n_new) {
+  return A::squared(n_old + n_new) > 1e-16;
+}
+
+/// transport() without twist.
+/// @param counts contacts whose result is used. Four contacts require have_rotation() of them.
+template <class A>
+[[gnu::always_inline]] inline typename A::Vector transport_untwisted(
+    const typename A::Vector& tangential, const typename A::Vector& n_old,
+    const typename A::Vector& n_new, const typename A::Mask& counts) {
+  using Number = typename A::Number;
+  using Mask = typename A::Mask;
+  const Number magnitude_squared = A::squared(tangential);
+  if (A::may_skip(magnitude_squared <= 0.0)) return A::zero();
+  const typename A::Vector half = n_old + n_new;
+  typename A::Vector turned = tangential;
+  if (!A::may_skip(A::negate(have_rotation<A>(n_old, n_new)))) {
+    turned = turned - half * (2.0 * A::dot(tangential, n_new) / A::squared(half));
+  }
+  turned = perpendicular_part<A>(turned, n_new);
+
+  const Number ratio = A::squared(turned) / magnitude_squared;
+  const Mask vanishes = (magnitude_squared <= 0.0) | (ratio <= 1e-30);
+  if (A::may_skip(vanishes)) return A::zero();
+  // For e = 1 - ratio, 1/sqrt(ratio) = 1 + e/2 + 3/8 e^2 + ...; if |e| < 1e-8, two terms are exact
+  // to rounding
+  const Number excess = 1.0 - ratio;
+  const Mask near = A::absolute(excess) < 1e-8;
+  Number factor = 1.0 + 0.5 * excess;
+  if (A::any(counts & A::negate(near | vanishes))) factor = near ? factor : 1.0 / A::root(ratio);
+  return A::select(vanishes, A::zero(), turned * factor);
+}
 
 /// Rotates a tangential vector (the history force of a contact) from the old tangent plane to the
 /// new one. The rotation is the smallest that takes n_old to n_new, followed by a twist about
@@ -31,22 +76,8 @@ namespace statejump::kernel {
 ///     unchanged.
 inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const Vector3& n_new,
                          double twist_angle = 0.0) {
-  const double magnitude_squared = tangential.squaredNorm();
-  if (magnitude_squared <= 0.0) return Vector3::Zero();
-  const Vector3 half = n_old + n_new;
-  const double half_squared = half.squaredNorm();
-  const double smallest = 1e-16;  // |h| < 1e-8: rounding determines the direction of h
-  Vector3 turned = tangential;
-  if (half_squared > smallest) turned -= half * (2.0 * tangential.dot(n_new) / half_squared);
-  turned -= turned.dot(n_new) * n_new;
-
-  const double ratio = turned.squaredNorm() / magnitude_squared;
-  if (ratio <= 1e-30) return Vector3::Zero();
-  // For e = 1 - ratio, 1/sqrt(ratio) = 1 + e/2 + 3/8 e^2 + ...; if |e| < 1e-8, two terms are exact
-  // to rounding
-  const double excess = 1.0 - ratio;
-  turned *= std::abs(excess) < 1e-8 ? 1.0 + 0.5 * excess : 1.0 / std::sqrt(ratio);
-  if (twist_angle != 0.0) {
+  Vector3 turned = transport_untwisted<Single>(tangential, n_old, n_new, true);
+  if (twist_angle != 0.0 && !turned.isZero(0.0)) {
     turned = std::cos(twist_angle) * turned + std::sin(twist_angle) * cross(n_new, turned);
   }
   return turned;

@@ -3,9 +3,17 @@
 
 #include <cmath>
 
+#include "statejump/kernel/arithmetic.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace statejump::kernel {
+
+/// R = R1 R2 / (R2 - R1) [m] for finite radii; see internal_effective_radius().
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Number radius_inside(
+    const typename A::Number& journal_radius, const typename A::Number& bearing_radius) {
+  return journal_radius * (bearing_radius / (bearing_radius - journal_radius));
+}
 
 /// Effective radius of an internal contact, a pin in a hole: R = R1 R2 / (R2 - R1) [m].
 ///
@@ -23,7 +31,7 @@ inline double internal_effective_radius(double journal_radius, double bearing_ra
   require(bearing_radius > journal_radius || bearing_radius < 0.0, "bearing_radius", bearing_radius,
           "(journal_radius, inf] m or negative");
   if (std::isinf(bearing_radius)) return journal_radius;
-  return journal_radius * (bearing_radius / (bearing_radius - journal_radius));
+  return radius_inside(journal_radius, bearing_radius);
 }
 
 /// Hertz stiffness K = 4/3 E* sqrt(R) [N/m^1.5], with which F = K delta^1.5 (paper eq. 6; Johnson
@@ -40,13 +48,15 @@ inline double hertz_depth(double effective_young_modulus, double effective_radiu
   return std::pow(force / hertz_stiffness(effective_young_modulus, effective_radius), 2.0 / 3.0);
 }
 
-/// Elastic normal contact at one penetration depth.
-struct HertzState {
-  double force;           ///< F [N], >= 0, compressive
-  double stiffness;       ///< dF/d(delta) [N/m], >= 0
-  double contact_radius;  ///< a [m], >= 0
-  double elastic_energy;  ///< integral of F over delta [J], >= 0
+/// Elastic normal contact at one penetration depth. @tparam A arithmetic, see Single
+template <class A>
+struct HertzStateOf {
+  typename A::Number force;           ///< F [N], >= 0, compressive
+  typename A::Number stiffness;       ///< dF/d(delta) [N/m], >= 0
+  typename A::Number contact_radius;  ///< a [m], >= 0
+  typename A::Number elastic_energy;  ///< integral of F over delta [J], >= 0
 };
+using HertzState = HertzStateOf<Single>;
 
 /// Hertz's point contact of two elastic bodies (Johnson 1985, eqs 4.22 and 4.23).
 ///
@@ -62,14 +72,18 @@ struct HertzState {
 /// @param effective_young_modulus E* [Pa], > 0
 /// @param effective_radius R [m], > 0, finite
 /// @param penetration_depth delta [m], positive when the bodies overlap; <= 0 is a gap and gives
-///        zeros. Arguments are not checked: this is the inner loop.
+///        zeros (one contact) or undefined numbers (four contacts). Arguments are not checked: this
+///        is the inner loop.
 /// Limits: frictionless, a << R, quasi-static (no waves), no adhesion, no plasticity.
-inline HertzState hertz(double effective_young_modulus, double effective_radius,
-                        double penetration_depth) {
-  if (penetration_depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
-  const double contact_radius = std::sqrt(effective_radius * penetration_depth);
-  const double stiffness = 2.0 * effective_young_modulus * contact_radius;
-  const double force = 2.0 / 3.0 * stiffness * penetration_depth;
+template <class A = Single>
+[[gnu::always_inline]] inline HertzStateOf<A> hertz(
+    const typename A::Number& effective_young_modulus, const typename A::Number& effective_radius,
+    const typename A::Number& penetration_depth) {
+  using Number = typename A::Number;
+  if (A::may_skip(penetration_depth <= 0.0)) return {Number{}, Number{}, Number{}, Number{}};
+  const Number contact_radius = A::root(effective_radius * penetration_depth);
+  const Number stiffness = 2.0 * effective_young_modulus * contact_radius;
+  const Number force = 2.0 / 3.0 * stiffness * penetration_depth;
   return {force, stiffness, contact_radius, 0.4 * force * penetration_depth};
 }
 

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "statejump/kernel/arithmetic.hpp"
 #include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/frame.hpp"
 #include "statejump/kernel/hertz.hpp"
 #include "statejump/kernel/vector.hpp"
 
@@ -40,14 +42,43 @@ inline ContactKinematics contact_kinematics(const JointContact& contact, double 
 }
 
 /// Velocity [m/s] of the material of a body at the position centre + arm.
-/// @param arm [m]
+/// @param velocity of the centre [m/s]; @param spin [rad/s]; @param arm [m]
+template <class A>
+[[gnu::always_inline]] inline typename A::Vector material_velocity(
+    const typename A::Vector& velocity, const typename A::Vector& spin,
+    const typename A::Vector& arm) {
+  return velocity + A::cross(spin, arm);
+}
 inline Vector3 material_velocity(const BodyMotion& body, const Vector3& arm) {
-  return body.velocity + cross(body.angular_velocity, arm);
+  return material_velocity<Single>(body.velocity, body.angular_velocity, arm);
 }
 
-/// Component of v perpendicular to a unit axis; same unit as v.
-inline Vector3 perpendicular_part(const Vector3& v, const Vector3& axis) {
-  return v - v.dot(axis) * axis;
+/// Penetration depth [m] of a round body inside another one; negative: gap.
+/// @param offset distance of the centres [m]; @param inner_radius R1, outer_radius R2 [m]
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Number depth_inside(
+    const typename A::Number& offset, const typename A::Number& inner_radius,
+    const typename A::Number& outer_radius) {
+  return offset - (outer_radius - inner_radius);
+}
+
+/// Penetration depth [m] of a pad in a plane face; negative: gap.
+/// @param eccentricity offset of the pad's centre along the normal [m]
+/// @param pad_radius R [m]; @param face_distance w [m]
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Number depth_in_plane(
+    const typename A::Number& eccentricity, const typename A::Number& pad_radius,
+    const typename A::Number& face_distance) {
+  return pad_radius - (face_distance - eccentricity);
+}
+
+/// Contact point, half-way between the two surfaces, minus the centre of body 1 [m].
+/// @param radius R1 [m]; @param depth delta [m]
+template <class A = Single>
+[[gnu::always_inline]] inline typename A::Vector arm_of_first(const typename A::Number& radius,
+                                                              const typename A::Number& depth,
+                                                              const typename A::Vector& normal) {
+  return normal * (radius - 0.5 * depth);
 }
 
 /// Penetration depth of journal and bearing [m], eq. (12): delta = |d| - (R2 - R1), where d is the
@@ -58,8 +89,8 @@ inline Vector3 perpendicular_part(const Vector3& v, const Vector3& axis) {
 inline double revolute_penetration(const Vector3& journal_centre, double journal_radius,
                                    const Vector3& bearing_centre, double bearing_radius,
                                    const Vector3& axis) {
-  return perpendicular_part(journal_centre - bearing_centre, axis).norm() -
-         (bearing_radius - journal_radius);
+  return depth_inside(perpendicular_part(journal_centre - bearing_centre, axis).norm(),
+                      journal_radius, bearing_radius);
 }
 
 /// Returns whether journal and bearing touch, i.e. revolute_penetration() > 0. It compares squares,
@@ -83,9 +114,9 @@ namespace detail {
 /// @param offset d [m], the component of `centres` that closes the clearance
 /// @param concentric_normal returns the normal when d is zero
 template <class Normal>
-JointContact round_contact(const BodyMotion& inner, double inner_radius, const BodyMotion& outer,
-                           double outer_radius, const Vector3& centres, const Vector3& offset,
-                           const Normal& concentric_normal) {
+[[gnu::always_inline]] inline JointContact round_contact(
+    const BodyMotion& inner, double inner_radius, const BodyMotion& outer, double outer_radius,
+    const Vector3& centres, const Vector3& offset, const Normal& concentric_normal) {
   JointContact contact;
   const double offset_squared = offset.squaredNorm();
   if (offset_squared <= std::numeric_limits<double>::min()) {
@@ -96,8 +127,8 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
     contact.normal = offset * (1.0 / contact.eccentricity);
   }
   contact.effective_radius = internal_effective_radius(inner_radius, outer_radius);
-  contact.penetration_depth = contact.eccentricity - (outer_radius - inner_radius);
-  contact.arm_1 = (inner_radius - 0.5 * contact.penetration_depth) * contact.normal;
+  contact.penetration_depth = depth_inside(contact.eccentricity, inner_radius, outer_radius);
+  contact.arm_1 = arm_of_first(inner_radius, contact.penetration_depth, contact.normal);
   contact.arm_2 = centres + contact.arm_1;
   contact.relative_velocity =
       material_velocity(inner, contact.arm_1) - material_velocity(outer, contact.arm_2);
@@ -126,9 +157,11 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
 /// @return the contact; concentric bodies have a gap (depth -c) and any unit normal perpendicular
 ///     to the axis
 /// @throws std::invalid_argument when not 0 < R1 < R2
-inline RevoluteContact revolute_contact(const BodyMotion& journal, double journal_radius,
-                                        const BodyMotion& bearing, double bearing_radius,
-                                        const Vector3& axis) {
+[[gnu::always_inline]] inline RevoluteContact revolute_contact(const BodyMotion& journal,
+                                                               double journal_radius,
+                                                               const BodyMotion& bearing,
+                                                               double bearing_radius,
+                                                               const Vector3& axis) {
   const Vector3 centres = journal.position - bearing.position;
   const auto across_the_axis = [&] {
     const Vector3 away = std::abs(axis.x()) < 0.6 ? Vector3::UnitX() : Vector3::UnitY();
@@ -143,7 +176,7 @@ inline RevoluteContact revolute_contact(const BodyMotion& journal, double journa
 /// @param ball_centre, socket_centre [m]; @param ball_radius R1, socket_radius R2 [m]
 inline double ball_penetration(const Vector3& ball_centre, double ball_radius,
                                const Vector3& socket_centre, double socket_radius) {
-  return (ball_centre - socket_centre).norm() - (socket_radius - ball_radius);
+  return depth_inside((ball_centre - socket_centre).norm(), ball_radius, socket_radius);
 }
 
 /// Whether ball and socket touch; decided as in revolute_touches().
@@ -165,8 +198,9 @@ inline bool ball_touches(const Vector3& ball_centre, double ball_radius,
 /// @param ball_radius R1 [m], @param socket_radius R2 [m], 0 < R1 < R2
 /// @return the contact; concentric bodies have a gap (depth -c) and the normal x
 /// @throws std::invalid_argument when not 0 < R1 < R2
-inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
-                                const BodyMotion& socket, double socket_radius) {
+[[gnu::always_inline]] inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
+                                                       const BodyMotion& socket,
+                                                       double socket_radius) {
   const Vector3 centres = ball.position - socket.position;
   return detail::round_contact(ball, ball_radius, socket, socket_radius, centres, centres,
                                [] { return Vector3(Vector3::UnitX()); });
@@ -200,7 +234,7 @@ inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
   contact.normal = centres * (-1.0 / distance);
   contact.effective_radius = internal_effective_radius(radius_1, -radius_2);
   contact.penetration_depth = (radius_1 + radius_2) - distance;
-  contact.arm_1 = (radius_1 - 0.5 * contact.penetration_depth) * contact.normal;
+  contact.arm_1 = arm_of_first(radius_1, contact.penetration_depth, contact.normal);
   contact.arm_2 = centres + contact.arm_1;
   contact.relative_velocity =
       material_velocity(ball_1, contact.arm_1) - material_velocity(ball_2, contact.arm_2);
@@ -225,9 +259,9 @@ inline PlaneContact plane_contact(const BodyMotion& slider, double pad_radius,
   PlaneContact contact;
   const Vector3 centres = slider.position - slot.position;
   contact.eccentricity = centres.dot(face_normal);
-  contact.penetration_depth = pad_radius - (face_distance - contact.eccentricity);
+  contact.penetration_depth = depth_in_plane(contact.eccentricity, pad_radius, face_distance);
   contact.normal = face_normal;
-  contact.arm_1 = (pad_radius - 0.5 * contact.penetration_depth) * face_normal;
+  contact.arm_1 = arm_of_first(pad_radius, contact.penetration_depth, face_normal);
   contact.arm_2 = centres + contact.arm_1;
   contact.relative_velocity =
       material_velocity(slider, contact.arm_1) - material_velocity(slot, contact.arm_2);

@@ -285,6 +285,27 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   physics.shearForce = -history.tangential_force;
 }
 
+/// Work of the elastic normal force when the clearance changes at fixed bodies, -F dc by the
+/// trapezoidal rule [J]. @tparam A arithmetic, see kernel::Single
+/// @param force, old_force [N]; @param clearance, old_clearance [m]
+template <class A = kernel::Single>
+[[gnu::always_inline]] inline typename A::Number work_of_clearance(
+    const typename A::Number& force, const typename A::Number& old_force,
+    const typename A::Number& clearance, const typename A::Number& old_clearance) {
+  return -(0.5 * (force + old_force)) * (clearance - old_clearance);
+}
+
+/// Change of the energy V of a Hertz contact when only the effective radius R changes [J], from
+/// dV/dR = V/(2 R) by the midpoint rule.
+/// @param energy, old_energy [J]; @param radius, old_radius [m]
+template <class A = kernel::Single>
+[[gnu::always_inline]] inline typename A::Number work_of_radius(
+    const typename A::Number& energy, const typename A::Number& old_energy,
+    const typename A::Number& radius, const typename A::Number& old_radius) {
+  return 0.5 * (energy + old_energy) / (2.0 * (0.5 * (radius + old_radius))) *
+         (radius - old_radius);
+}
+
 /// Energies of one contact. Thermal expansion does work through the clearance c and the radii. With
 /// V(delta, radii) and delta = eccentricity - c, this work is the change of V at fixed bodies: -F
 /// dc plus the change of V by the radii at fixed depth. The trapezoidal rule integrates it over the
@@ -299,8 +320,8 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
   const double clearance = geometry.eccentricity - geometry.penetrationDepth;
   double thermal_work = 0;
   if (physics.previousRadius > 0) {
-    const double force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
-    thermal_work = -force * (clearance - physics.previousClearance) -
+    thermal_work = work_of_clearance(response.elastic_normal_force, physics.previousElasticForce,
+                                     clearance, physics.previousClearance) -
                    dissipation_force * geometry.clearanceRate * time_step;
     add_radius_work(thermal_work);
   }
@@ -352,11 +373,9 @@ bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host)
   if (host.tracks_energy()) {
     host.add(account(
         response, 0, geometry.effectiveRadius,
-        [&](double& work) {  // dV/dR = V / (2 R)
-          const double energy =
-              0.5 * (response.normal_elastic_energy + physics.previousElasticEnergy);
-          const double radius = 0.5 * (geometry.effectiveRadius + physics.previousRadius);
-          work += energy / (2 * radius) * (geometry.effectiveRadius - physics.previousRadius);
+        [&](double& work) {
+          work += work_of_radius(response.normal_elastic_energy, physics.previousElasticEnergy,
+                                 geometry.effectiveRadius, physics.previousRadius);
         },
         host.time_step(), geometry, physics));
   }

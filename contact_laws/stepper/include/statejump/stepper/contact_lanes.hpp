@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hertz–Mindlin contact of four contacts at once: the operations of find_revolute(), find_ball(),
-// find_plane() and hertz_mindlin_step(), in the same order and without branches. It applies if the
-// bodies do not rotate and each contact stays open or stays in contact. Lanes with any other case
-// are marked as deferred and left to those functions.
+// Hertz–Mindlin contact of four contacts at once, as find_revolute(), find_ball(), find_plane() and
+// hertz_mindlin_step() compute one. The formulas are those of the kernel, with the arithmetic
+// Lanes. This header has the order in which they are called and the choice among their results. It
+// applies if the bodies do not rotate and each contact stays open or stays in contact. Lanes with
+// any other case are marked as deferred and left to those functions.
 #pragma once
 
 #include <array>
@@ -10,7 +11,13 @@
 #include <limits>
 #include <vector>
 
+#include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/frame.hpp"
+#include "statejump/kernel/hertz.hpp"
+#include "statejump/kernel/joint_kinematics.hpp"
+#include "statejump/kernel/mindlin.hpp"
 #include "statejump/stepper/arrays.hpp"
+#include "statejump/stepper/contact.hpp"
 #include "statejump/stepper/pack.hpp"
 
 namespace statejump::stepper {
@@ -94,25 +101,6 @@ namespace detail {
   return stiffness < largest;
 }
 
-/// kernel::transport() without twist. @param deferred gains the lanes with opposite normals
-[[gnu::always_inline]] inline Pack3 transport(const Pack3& tangential, const Pack3& n_old,
-                                              const Pack3& n_new, const Mask& real,
-                                              Mask& deferred) {
-  const Pack magnitude_squared = dot(tangential, tangential);
-  const Pack3 half = n_old + n_new;
-  const Pack half_squared = dot(half, half);
-  deferred |= real & ~(half_squared > 1e-16);
-  Pack3 turned = tangential - half * (2.0 * dot(tangential, n_new) / half_squared);
-  turned = turned - n_new * dot(turned, n_new);
-  const Pack ratio = dot(turned, turned) / magnitude_squared;
-  const Mask vanishes = (magnitude_squared <= 0.0) | (ratio <= 1e-30);
-  const Pack excess = 1.0 - ratio;
-  const Mask far = ~(absolute(excess) < 1e-8);
-  Pack factor = 1.0 + 0.5 * excess;
-  if (any(real & far & ~vanishes)) factor = far ? 1.0 / root(ratio) : factor;
-  return select(vanishes, Pack3{}, turned * factor);
-}
-
 /// Geometry of four contacts.
 struct LanesGeometry {
   Pack3 centres;  ///< from body 2 to body 1 [m]
@@ -131,13 +119,13 @@ struct LanesGeometry {
   if (at.joint == Joint::plane) {
     found.normal = at.axis;
     found.eccentricity = dot(centres, found.normal);
-    found.depth = length_1 - (length_2 - found.eccentricity);
+    found.depth = kernel::depth_in_plane<Lanes>(found.eccentricity, length_1, length_2);
     found.radius = length_1;
     deferred = ~at.real & ~(found.depth <= 0.0);
     return found;
   }
   Pack3 offset = centres;
-  if (at.joint == Joint::revolute) offset = centres - at.axis * dot(centres, at.axis);
+  if (at.joint == Joint::revolute) offset = kernel::perpendicular_part<Lanes>(centres, at.axis);
   const Pack squared = dot(offset, offset);
   const Pack gap = length_2 - length_1;
   const Mask open = squared <= gap * gap;
@@ -146,8 +134,8 @@ struct LanesGeometry {
              (~at.real & ~open) | (at.real & ~(squared > std::numeric_limits<double>::min()));
   found.eccentricity = root(squared);
   found.normal = offset * (1.0 / found.eccentricity);
-  found.depth = found.eccentricity - gap;
-  found.radius = length_1 * (length_2 / gap);
+  found.depth = kernel::depth_inside<Lanes>(found.eccentricity, length_1, length_2);
+  found.radius = kernel::radius_inside<Lanes>(length_1, length_2);
   return found;
 }
 
@@ -158,40 +146,39 @@ struct LanesGeometry {
                                                       const LanesGeometry& geometry,
                                                       const Pack& length_1) {
   if (!at.spins) return one.velocity - two.velocity;
-  const Pack3 arm_1 = geometry.normal * (length_1 - 0.5 * geometry.depth);
+  const Pack3 arm_1 = kernel::arm_of_first<Lanes>(length_1, geometry.depth, geometry.normal);
   const Pack3 arm_2 = geometry.centres + arm_1;
-  return (one.velocity + cross(at.spin_1, arm_1)) - (two.velocity + cross(at.spin_2, arm_2));
+  return kernel::material_velocity<Lanes>(one.velocity, at.spin_1, arm_1) -
+         kernel::material_velocity<Lanes>(two.velocity, at.spin_2, arm_2);
 }
 
 /// Normal forces of four contacts.
 struct LanesNormal {
-  Pack contact_radius;        ///< a [m]
-  Pack elastic_force, force;  ///< [N]
-  Pack approach_speed;        ///< [m/s]
-  Pack damping_power;         ///< [W]
+  kernel::HertzStateOf<Lanes> elastic;
+  Pack force;           ///< [N]
+  Pack approach_speed;  ///< [m/s]
+  Pack damping_power;   ///< [W]
 };
 
-/// Normal forces of four contacts, as by hertz() and contact_step().
+/// Normal forces of four contacts, as by contact_step().
 /// @param deferred on return includes unstable contacts
 [[gnu::always_inline]] inline LanesNormal normal_lanes(const ContactLanes& at,
                                                        const LanesGeometry& geometry,
                                                        const Pack3& velocity, Mask& deferred) {
   LanesNormal normal;
-  normal.contact_radius = root(geometry.radius * geometry.depth);
-  const Pack stiffness = 2.0 * at.young * normal.contact_radius;
+  normal.elastic = kernel::hertz<Lanes>(at.young, geometry.radius, geometry.depth);
+  const auto& [elastic_force, stiffness, contact_radius, energy] = normal.elastic;
   // Without overlap the root is not positive. A stable stiffness implies that both moduli are > 0.
-  deferred |=
-      at.real & ~((normal.contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
-  normal.elastic_force = 2.0 / 3.0 * stiffness * geometry.depth;
+  deferred |= at.real & ~((contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
   normal.approach_speed = dot(velocity, geometry.normal);
-  normal.force = normal.elastic_force;
+  normal.force = elastic_force;
   normal.damping_power = Pack{};
   if (at.damps_normal) {
-    const Pack damping = 2.0 * at.normal_damping * root(at.mass * stiffness);
-    const Mask damped = at.normal_damping > 0.0;
-    normal.force = damped ? not_negative(normal.elastic_force + damping * normal.approach_speed)
-                          : normal.force;
-    normal.damping_power = (normal.force - normal.elastic_force) * normal.approach_speed;
+    const Pack damping = kernel::viscous_damping<Lanes>(at.normal_damping, at.mass, stiffness);
+    normal.force = at.normal_damping > 0.0 ? kernel::damped_normal_force<Lanes>(
+                                                 elastic_force, damping, normal.approach_speed)
+                                           : elastic_force;
+    normal.damping_power = (normal.force - elastic_force) * normal.approach_speed;
   }
   return normal;
 }
@@ -199,99 +186,72 @@ struct LanesNormal {
 /// Tangential forces of four contacts.
 struct LanesFriction {
   Pack3 velocity;  ///< tangential [m/s]
-  Pack3 force;     ///< spring force on body 1 [N]
+  Pack3 force;     ///< of the spring on body 1 [N]
   Pack stiffness;  ///< k_t [N/m]
   Pack limit;      ///< mu F_N [N]
-  Mask free;       ///< no friction
+  Pack loss;       ///< of this step [J]
   Mask slipping;
 };
 
 /// Friction of four contacts, as by mindlin_step().
-/// @param step receives the friction loss; its `deferred` on return includes contacts whose normal
-///     reverses
-template <bool tracks_energy>
+/// @param deferred on return includes contacts whose normal reverses
 [[gnu::always_inline]] inline LanesFriction friction_lanes(const ContactLanes& at,
                                                            const Pack3& normal,
                                                            const LanesNormal& pressed,
                                                            const Pack3& velocity, double time_step,
-                                                           LanesStep& step) {
+                                                           Mask& deferred) {
+  deferred |= at.real & ~kernel::have_rotation<Lanes>(at.normal, normal);
+  const Pack3 old_force =
+      kernel::transport_untwisted<Lanes>(at.tangential_force, at.normal, normal, at.real);
   LanesFriction friction;
-  const Pack3 old_force = transport(at.tangential_force, at.normal, normal, at.real, step.deferred);
-  friction.stiffness = 8.0 * at.shear * pressed.contact_radius;
+  friction.stiffness = kernel::mindlin_stiffness<Lanes>(at.shear, pressed.elastic.contact_radius);
   friction.limit = at.friction * pressed.force;
   friction.velocity = velocity - normal * pressed.approach_speed;
-  const Pack& limit = friction.limit;
   const Pack3 slide = friction.velocity * time_step;
-  const Mask stored = at.stiffness > 0.0;
-  const Pack old_compliance = stored ? 1.0 / at.stiffness : 0.0;
-  friction.free = ~(limit > 0.0);
-  const Mask loading = (friction.stiffness >= at.stiffness) & stored;
-  const Pack kept = loading ? 1.0 : friction.stiffness * old_compliance;
-  Pack3 force = old_force * kept - slide * friction.stiffness;
-  const Pack force_squared = dot(force, force);
-  friction.slipping = force_squared > limit * limit;
-  const bool slips = any(friction.slipping & at.real & ~friction.free);
-  Pack compliance, old_squared, old_work;
-  if constexpr (tracks_energy) {
-    compliance = 1.0 / friction.stiffness;
-    old_squared = dot(old_force, old_force);
-    old_work = dot(old_force, slide);
-    step.friction = loading ? 0.5 * old_squared * (old_compliance - compliance)
-                            : 0.5 * (1.0 - kept) * (old_squared * old_compliance - old_work);
-  }
-  if (slips) {
-    const Pack trial = root(force_squared);
-    const Pack3 direction = force * (1.0 / trial);
-    if constexpr (tracks_energy) {
-      const Pack slip = (trial - limit) * compliance;
-      const Pack loss = 0.5 * (kept * dot(old_force, direction) + limit) * slip;
-      step.friction = friction.slipping ? step.friction + loss : step.friction;
-    }
-    force = select(friction.slipping, direction * limit, force);
-  }
-  friction.force = select(friction.free, Pack3{}, force);
-  friction.slipping |= friction.free;
-  if constexpr (tracks_energy) {
-    const Pack released = 0.5 * (old_squared * old_compliance - old_work);
-    step.friction = not_negative(friction.free ? released : step.friction);
-  }
+  const Mask free = ~(friction.limit > 0.0);
+  const auto before = kernel::spring_before<Lanes>(old_force, at.stiffness, slide);
+  const auto spring = kernel::spring_step<Lanes>(friction.stiffness, friction.limit, slide,
+                                                 old_force, before, at.real & ~free);
+  friction.force = select(free, Pack3{}, spring.force);
+  friction.slipping = spring.slipping | free;
+  friction.loss = free ? not_negative(0.5 * before.released()) : spring.dissipation;
   return friction;
 }
 
 /// Tangential force of four contacts, as by contact_step().
-/// @param damping_loss set if energy is tracked [J]
+/// @param damping_loss set to the loss of this step, if there is damping [J]
 /// @return tangential force with its viscous part [N]
-template <bool tracks_energy>
 [[gnu::always_inline]] inline Pack3 damp_lanes(const ContactLanes& at,
                                                const LanesFriction& friction, double time_step,
                                                Pack& damping_loss) {
-  if (!at.damps_tangential) return friction.force;
-  const Mask damped = (at.tangential_damping > 0.0) & ~friction.free & ~friction.slipping;
-  const Pack damping = 2.0 * at.tangential_damping * root(at.mass * friction.stiffness);
-  Pack3 sum = friction.force - friction.velocity * damping;
-  const Pack squared = dot(sum, sum);
-  const Mask over = squared > friction.limit * friction.limit;
-  if (any(over & damped)) sum = select(over, sum * (friction.limit / root(squared)), sum);
-  if constexpr (tracks_energy) {
-    const Pack power = over ? not_negative(dot(friction.force - sum, friction.velocity))
-                            : damping * dot(friction.velocity, friction.velocity);
-    damping_loss = damped ? power * time_step : 0.0;
-  }
-  return select(damped, sum, friction.force);
+  const Pack3& spring = friction.force;
+  if (!at.damps_tangential) return spring;
+  const Mask damped = (at.tangential_damping > 0.0) & ~friction.slipping;
+  const Pack damping =
+      kernel::viscous_damping<Lanes>(at.tangential_damping, at.mass, friction.stiffness);
+  Pack3 sum = spring;
+  const Pack power = kernel::add_tangential_damping<Lanes>(damping, friction.limit,
+                                                           friction.velocity, damped, sum);
+  damping_loss = damped ? power * time_step : 0.0;
+  return select(damped, sum, spring);
 }
 
 /// As account(); updates the stored energy state of touching lanes.
+/// @param damping_loss of the tangential forces in this step [J]
 [[gnu::always_inline]] inline void account_lanes(ContactLanes& at, const LanesGeometry& geometry,
-                                                 const LanesNormal& normal, double time_step,
+                                                 const LanesNormal& normal,
+                                                 const LanesFriction& friction,
+                                                 const Pack& damping_loss, double time_step,
                                                  LanesStep& step) {
-  step.damping = normal.damping_power * time_step + step.damping;
-  const Pack energy = 0.4 * normal.elastic_force * geometry.depth;
+  step.friction = friction.loss;
+  step.damping = normal.damping_power * time_step + damping_loss;
+  const auto& [elastic_force, stiffness, contact_radius, energy] = normal.elastic;
   const Pack clearance = geometry.eccentricity - geometry.depth;
-  Pack work = -(0.5 * (normal.elastic_force + at.elastic_force)) * (clearance - at.clearance);
-  work += 0.5 * (energy + at.elastic_energy) / (2.0 * (0.5 * (geometry.radius + at.radius))) *
-          (geometry.radius - at.radius);
+  const Pack work =
+      work_of_clearance<Lanes>(elastic_force, at.elastic_force, clearance, at.clearance) +
+      work_of_radius<Lanes>(energy, at.elastic_energy, geometry.radius, at.radius);
   step.thermal_work = at.radius > 0.0 ? work : 0.0;
-  at.elastic_force = step.touches ? normal.elastic_force : at.elastic_force;
+  at.elastic_force = step.touches ? elastic_force : at.elastic_force;
   at.elastic_energy = step.touches ? energy : at.elastic_energy;
   at.clearance = step.touches ? clearance : at.clearance;
   at.radius = step.touches ? geometry.radius : at.radius;
@@ -316,13 +276,15 @@ template <bool tracks_energy>
   const Pack3 velocity = detail::relative_velocity(at, one, two, geometry, length_1);
   const detail::LanesNormal normal = detail::normal_lanes(at, geometry, velocity, step.deferred);
   const detail::LanesFriction friction =
-      detail::friction_lanes<tracks_energy>(at, geometry.normal, normal, velocity, time_step, step);
-  const Pack3 tangential_force =
-      detail::damp_lanes<tracks_energy>(at, friction, time_step, step.damping);
+      detail::friction_lanes(at, geometry.normal, normal, velocity, time_step, step.deferred);
+  Pack damping_loss{};
+  const Pack3 tangential_force = detail::damp_lanes(at, friction, time_step, damping_loss);
   step.force = tangential_force - geometry.normal * normal.force;
   step.deferred &= at.used;
   step.touches = at.real & at.used & ~step.deferred;
-  if constexpr (tracks_energy) detail::account_lanes(at, geometry, normal, time_step, step);
+  if constexpr (tracks_energy) {
+    detail::account_lanes(at, geometry, normal, friction, damping_loss, time_step, step);
+  }
   at.normal = select(step.touches, geometry.normal, at.normal);
   at.tangential_force = select(step.touches, friction.force, at.tangential_force);
   at.stiffness = step.touches ? friction.stiffness : at.stiffness;

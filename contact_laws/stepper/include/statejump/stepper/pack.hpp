@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "statejump/kernel/arithmetic.hpp"
 #include "statejump/kernel/vector.hpp"
 
 namespace statejump::stepper {
@@ -94,5 +95,32 @@ struct Pack3 {
 [[gnu::always_inline]] inline bool any(const Mask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
+
+/// Arithmetic of the kernel's formulas for four contacts at once; see kernel::Single.
+struct Lanes {
+  using Number = Pack;
+  using Vector = Pack3;
+  using Mask = stepper::Mask;
+
+  [[gnu::always_inline]] static Vector zero() { return Pack3{}; }
+  [[gnu::always_inline]] static Number dot(const Vector& a, const Vector& b) {
+    return stepper::dot(a, b);
+  }
+  [[gnu::always_inline]] static Number squared(const Vector& a) { return stepper::dot(a, a); }
+  [[gnu::always_inline]] static Vector cross(const Vector& a, const Vector& b) {
+    return stepper::cross(a, b);
+  }
+  [[gnu::always_inline]] static Number root(const Number& a) { return stepper::root(a); }
+  [[gnu::always_inline]] static Number absolute(const Number& a) { return stepper::absolute(a); }
+  [[gnu::always_inline]] static Number larger(const Number& a, const Number& b) {
+    return stepper::larger(a, b);
+  }
+  [[gnu::always_inline]] static Vector select(const Mask& which, const Vector& a, const Vector& b) {
+    return stepper::select(which, a, b);
+  }
+  [[gnu::always_inline]] static Mask negate(const Mask& mask) { return ~mask; }
+  [[gnu::always_inline]] static bool may_skip(const Mask&) { return false; }
+  [[gnu::always_inline]] static bool any(const Mask& mask) { return stepper::any(mask); }
+};
 
 }  // namespace statejump::stepper

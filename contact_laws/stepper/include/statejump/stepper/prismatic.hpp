@@ -70,11 +70,14 @@ inline double stop_depth(const Prismatic& joint) {
   return joint.slide > 0 ? joint.slide - joint.clearancePlus : -joint.slide - joint.clearanceMinus;
 }
 
+/// Stiffness of the stop [N/m]; 0 if it is open.
+inline double stop_stiffness(const Prismatic& joint, double depth) {
+  return depth > 0 ? 1.5 * joint.stopStiffness * std::sqrt(depth) + joint.stopSpring : 0.0;
+}
+
 /// Largest stiffness of the joint at its current slide [N/m].
 inline double largest_stiffness(const Prismatic& joint) {
-  const double depth = stop_depth(joint);
-  double stop = 1.5 * joint.stopStiffness * std::sqrt(std::max(0.0, depth));
-  if (depth > 0) stop += joint.stopSpring;
+  const double stop = stop_stiffness(joint, stop_depth(joint));
   const double sticks = joint.frictionLimit > 0 ? joint.frictionStiffness : 0;
   return std::max(joint.stiffnessAcross, sticks + stop);
 }
@@ -135,11 +138,10 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
   const double depth = stop_depth(joint);
   if (depth > 0) {
     const double sign = slide > 0 ? 1.0 : -1.0;
-    const double root = std::sqrt(depth);
-    const double hertz = joint.stopStiffness * depth * root;
+    const double hertz = joint.stopStiffness * depth * std::sqrt(depth);
     const double pushes = hertz + joint.stopSpring * depth;
-    const double stiffness = 1.5 * joint.stopStiffness * root + joint.stopSpring;
-    const double pressed = kernel::damped_normal_force(pushes, dashpot(stiffness), sign * speed);
+    const double pressed =
+        kernel::damped_normal_force(pushes, dashpot(stop_stiffness(joint, depth)), sign * speed);
     joint.stopForce = sign * pressed;
     step.elastic += 0.4 * hertz * depth + 0.5 * joint.stopSpring * depth * depth;
     step.damping += (pressed - pushes) * sign * speed * time_step;
