@@ -76,11 +76,9 @@ template <class A>
 ///     unchanged.
 inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const Vector3& n_new,
                          double twist_angle = 0.0) {
-  Vector3 turned = transport_untwisted<Single>(tangential, n_old, n_new, true);
-  if (twist_angle != 0.0 && !turned.isZero(0.0)) {
-    turned = std::cos(twist_angle) * turned + std::sin(twist_angle) * cross(n_new, turned);
-  }
-  return turned;
+  const Vector3 turned = transport_untwisted<Single>(tangential, n_old, n_new, true);
+  if (twist_angle == 0.0 || turned.isZero(0.0)) return turned;
+  return std::cos(twist_angle) * turned + std::sin(twist_angle) * cross(n_new, turned);
 }
 
 }  // namespace statejump::kernel
