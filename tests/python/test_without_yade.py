@@ -110,7 +110,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_wheel_lists_what_it_holds(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
-        about = "statejump-0.1.0.dist-info"
+        about = "statejump-1.0.0.dist-info"
         rows = list(csv.reader(archive.read(f"{about}/RECORD").decode().splitlines()))
         assert [row[0] for row in rows] == archive.namelist()
         for name, digest, length in rows[:-1]:
@@ -119,7 +119,7 @@ def test_wheel_lists_what_it_holds(wheel: Path) -> None:
             assert (digest, int(length)) == (f"sha256={encoded}", len(content)), name
         assert {name.split("/")[0] for name in archive.namelist()} == {"statejump", about}
     found = importlib.metadata.PathDistribution(zipfile.Path(wheel) / about)  # type: ignore[arg-type]
-    assert (found.metadata["Name"], found.version) == ("statejump", "0.1.0")
+    assert (found.metadata["Name"], found.version) == ("statejump", "1.0.0")
     assert found.requires and [entry.value for entry in found.entry_points] == ["statejump.cli.main:main"]
 
 

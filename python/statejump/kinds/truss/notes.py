@@ -24,7 +24,7 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> Note:
     if note["kind"] == "large_start":
         size_m = float(np.ptp(truss.nodes.position_m, axis=0).max())
         return Note("large_start", value=note["value"], share=note["value"] / size_m)
-    code = note["kind"] if note["kind"] in ("redundant_constraint", "slack", "snap", "not_located") else "several_reactions"
+    code = "several_reactions" if note["kind"] == "not_unique" else note["kind"]
     return Note(code, named=_named(note["joints"]), at=at, value=note["value"], joints=tuple(note["joints"]),
                 temperature_change_K=note["temperature_change_K"], time_s=note["time_s"])
 
