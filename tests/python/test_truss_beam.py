@@ -2,11 +2,14 @@
 """Beams in case files: closed forms of bending, gradients, moments, friction; sections; refusals."""
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+
+from conftest import Outcome
 
 import statejump as sj
 from statejump.core.errors import StatejumpError
@@ -339,3 +342,17 @@ def test_mechanism_names_the_rotation() -> None:
     with pytest.raises(StatejumpError) as refused:
         states(made)
     assert "node 'B' mostly along y" in str(refused.value)
+
+
+def test_boom_has_a_page_and_tables(statejump: Callable[..., Outcome]) -> None:
+    for command in (["reduced", "trusses/boom"], ["report", "results/boom", "-o", "page.html"],
+                    ["export", "results/boom/reduced.h5", "--format", "vtu"]):
+        done = statejump(*command)
+        assert done.status == 0, done.errors
+
+
+@pytest.mark.parametrize("command", [["dem"], ["compare"], ["reduced", "--dynamic"], ["truss", "answers"], ["control"]])
+def test_commands_without_beams_refuse_them(statejump: Callable[..., Outcome], command: list[str]) -> None:
+    refused = statejump(*command, "trusses/boom")
+    assert refused.status == 2
+    assert "beam 'bay_1' bends" in refused.errors
