@@ -191,6 +191,26 @@ def test_heated_beam_between_pins_buckles() -> None:
     assert refused.value.code == "buckled"
 
 
+def test_hinge_is_two_nodes_that_constraints_tie() -> None:
+    """Two cantilevers with a hinge between their tips and a load on it: each carries half."""
+    beam = {**WARM, "gradient_per_m": [0.0, 0.0]}
+    made = frame(clamp("A", (0.0, 0.0)), {**node("B", (1.0, 0.0)), "force_N": [0.0, -1e3]}, node("C", (1.0, 0.0)),
+                 clamp("D", (2.0, 0.0)), change_K=1e-6,
+                 beam=[{"nodes": ["A", "B"], **beam}, {"nodes": ["C", "D"], **beam}])
+    made["constraint"] = [{"name": f"hinge {axis}", "nodes": ["B", "C"], "directions": [axis, axis],
+                           "coefficients": [1.0, -1.0]} for axis in "xy"]
+    found = states(made)
+    assert found["displacement_m"][0, 1:3, 1] == pytest.approx([-500 / (3 * 6e7)] * 2, rel=1e-6)
+    turned = 500 / (2 * 6e7)
+    assert found["rotation_rad"][0, 1:3, 2] == pytest.approx([-turned, turned], rel=1e-6)
+
+
+def test_neglected_shear_centre_is_a_warning() -> None:
+    made = spatial(shape="channel", dimensions_m=[0.1, 0.05, 0.004, 0.006], axis_y=[0.0, 1.0, 0.0])
+    assert "beam 'beam 1': the shear centre" in parse_case(made).implausible[0]
+    assert not parse_case(spatial(shape="tube", dimensions_m=[0.05, 0.002])).implausible
+
+
 def test_beams_and_bars_together() -> None:
     """A stay that shortens: a bar pulls the tip of a beam."""
     made = frame(clamp("A", (0.0, 0.0)), node("B", (1.0, 0.0)), node("C", (1.0, 1.0), "xy"), change_K=-50.0,
