@@ -14,7 +14,7 @@ from conftest import Outcome
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss import motion, solve
+from statejump.kinds.truss import motion, outcomes, solve
 from statejump.kinds.truss.dem import check as check_dem
 from statejump.kinds.truss.elements.beam_shapes import SHAPES, Shape, solid_torsion_m4
 from statejump.kinds.truss.generate.document import document, finished, node
@@ -177,6 +177,14 @@ def test_boom_keeps_the_friction_of_its_cradle() -> None:
     assert run.history["rotation_rad"].unit == "rad"
     assert run.history["beam_moment_first_N_m"].items == "beams"
     assert [event.kind for event in run.events][:1] == ["first_slip"] or len(run.events) > 0
+
+
+def test_outcomes_of_a_campaign_include_beams() -> None:
+    straight = {**WARM, "gradient_per_m": [0.0, 0.0], "temperature_fraction": 1.0}
+    case = sj.load(frame(clamp("A", (0.0, 0.0)), clamp("B", (1.0, 0.0)), change_K=10.0,
+                         beam=[{"nodes": ["A", "B"], **straight}]))
+    found = outcomes.outcomes(case, outcomes.quick(case))
+    assert found["largest_axial_force_N"] == pytest.approx(210e9 * 2e-2 * 1.2e-4, rel=1e-3)
 
 
 def test_heated_beam_between_pins_buckles() -> None:
