@@ -127,6 +127,52 @@ def test_free_thermal_arc_converges_with_fourth_order() -> None:
     assert np.log2(arc(4) / arc(8)) == pytest.approx(4, abs=0.05)
 
 
+SLENDER: dict[str, Any] = {"young_modulus_Pa": 1e9, "thermal_expansion_per_K": 0.0, "cross_section_area_m2": 1e-2,
+                           "second_moments_of_area_m4": [1e-8, 1e-8]}
+RIGIDITY_N_M2 = 10.0  # E I of SLENDER; P/(E A) is 1e-6 P L²/(E I) with L = 1 m
+
+
+def slender(elements: int, **at_tip: Any) -> dict[str, Any]:
+    """A cantilever of 1 m under a load at its tip."""
+    nodes = [node(f"N{k}", (k / elements, 0.0)) for k in range(1, elements + 1)]
+    return frame(clamp("N0", (0.0, 0.0)), *nodes[:-1], {**nodes[-1], **at_tip}, change_K=1e-6,
+                 beam=[{"nodes": [f"N{k}", f"N{k + 1}"], **SLENDER} for k in range(elements)])
+
+
+@pytest.mark.parametrize("load, x, w, error", [
+    (1.0, 0.943566763717, 0.301720773800, 4e-7), (5.0, 0.612371639276, 0.713791523612, 1.2e-5),
+    (10.0, 0.445004402246, 0.810609024880, 3.5e-5),
+])
+def test_elastica(load: float, x: float, w: float, error: float) -> None:
+    # Eight beams; their error is of fourth order, see BeamFrame.ElasticaWithTipForce. The member extends by P/(E A).
+    made = slender(8, force_N=[0.0, load * RIGIDITY_N_M2])
+    tip = states(made, increments_per_branch=1)["displacement_m"][0, -1]
+    assert tip[:2] + [1, 0] == pytest.approx([x, w], abs=error + 1e-6 * load)
+
+
+def test_end_moment_bends_to_a_circle() -> None:
+    found = states(slender(8, moment_N_m=[2 * np.pi * RIGIDITY_N_M2]), increments_per_branch=1)
+    assert found["displacement_m"][0, -1] == pytest.approx([-1, 0, 0], abs=1e-13)
+    assert found["rotation_rad"][0, -1, 2] == pytest.approx(2 * np.pi, abs=1e-12)
+
+
+def test_bend_of_45_degrees() -> None:
+    def tip(elements: int) -> np.ndarray:
+        angle = np.pi / 4 * np.arange(elements + 1) / elements
+        places = 100 * np.stack((1 - np.cos(angle), np.sin(angle), 0 * angle), axis=1)
+        nodes = [clamp("N0", (0.0, 0.0, 0.0)), *(node(f"N{k}", place) for k, place in enumerate(places) if k)]
+        nodes[-1]["force_N"] = [0.0, 0.0, 300.0]
+        beam = {"young_modulus_Pa": 1e7, "shear_modulus_Pa": 5e6, "thermal_expansion_per_K": 0.0, "shape": "rectangle",
+                "dimensions_m": [1.0, 1.0], "shear_factors": [1.0, 1.0], "axis_y": [0.0, 0.0, 1.0]}
+        made = frame(*nodes, dimension=3, change_K=1e-6,
+                     beam=[{"nodes": [f"N{k}", f"N{k + 1}"], **beam} for k in range(elements)])
+        return np.asarray(places[-1] + states(made, increments_per_branch=1)["displacement_m"][0, -1])
+
+    coarse, fine = tip(4), tip(8)
+    # Straight beams on the curve: second order. Shear, which the reference does not have, moves the tip by 1e-3.
+    assert fine + (fine - coarse) / 3 == pytest.approx([22.113118655, 58.537050522, 40.477781496], abs=5e-3)
+
+
 def test_tip_force_in_space() -> None:
     """Small loads along both axes of a turned section, and a torque: the Timoshenko cantilever."""
     height, width, length, shear = 0.05, 0.02, 1.0, 70e9 / 2.66
