@@ -42,10 +42,11 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
         )
     if case.has_jump:
         values.update(largest_node_jump_m=float(jumps.max()), rms_node_jump_m=float(np.sqrt(np.mean(jumps**2))))
+    bending = [element.tension_N(found.states) for element in ELEMENTS if element.bends]
+    axial_forces = [found.states["axial_force_N"], *bending]
     values.update(
         friction_dissipation_J=float(heat.sum()),
         slipping_joints=float(np.count_nonzero(heat > LEAST_HEAT * heat.sum())),
-        largest_axial_force_N=max(float(np.abs(axial).max(initial=0.0)) for axial in (
-            found.states["axial_force_N"], *(element.tension_N(found.states) for element in ELEMENTS if element.bends))),
+        largest_axial_force_N=max(float(np.abs(axial).max(initial=0.0)) for axial in axial_forces),
     )
     return values
