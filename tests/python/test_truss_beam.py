@@ -2,16 +2,19 @@
 """Beams in case files: closed forms of bending, gradients, moments, friction; sections; refusals."""
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from conftest import Outcome
+
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss import motion, solve
+from statejump.kinds.truss import motion, outcomes, solve
 from statejump.kinds.truss.dem import check as check_dem
 from statejump.kinds.truss.elements.beam_shapes import SHAPES, Shape, solid_torsion_m4
 from statejump.kinds.truss.generate.document import document, finished, node
@@ -124,6 +127,52 @@ def test_free_thermal_arc_converges_with_fourth_order() -> None:
     assert np.log2(arc(4) / arc(8)) == pytest.approx(4, abs=0.05)
 
 
+SLENDER: dict[str, Any] = {"young_modulus_Pa": 1e9, "thermal_expansion_per_K": 0.0, "cross_section_area_m2": 1e-2,
+                           "second_moments_of_area_m4": [1e-8, 1e-8]}
+RIGIDITY_N_M2 = 10.0  # E I of SLENDER; P/(E A) is 1e-6 P L²/(E I) with L = 1 m
+
+
+def slender(elements: int, **at_tip: Any) -> dict[str, Any]:
+    """A cantilever of 1 m under a load at its tip."""
+    nodes = [node(f"N{k}", (k / elements, 0.0)) for k in range(1, elements + 1)]
+    return frame(clamp("N0", (0.0, 0.0)), *nodes[:-1], {**nodes[-1], **at_tip}, change_K=1e-6,
+                 beam=[{"nodes": [f"N{k}", f"N{k + 1}"], **SLENDER} for k in range(elements)])
+
+
+@pytest.mark.parametrize("load, x, w, error", [
+    (1.0, 0.943566763717, 0.301720773800, 4e-7), (5.0, 0.612371639276, 0.713791523612, 1.2e-5),
+    (10.0, 0.445004402246, 0.810609024880, 3.5e-5),
+])
+def test_elastica(load: float, x: float, w: float, error: float) -> None:
+    # Eight beams; their error is of fourth order, see BeamFrame.ElasticaWithTipForce. The member extends by P/(E A).
+    made = slender(8, force_N=[0.0, load * RIGIDITY_N_M2])
+    tip = states(made, increments_per_branch=1)["displacement_m"][0, -1]
+    assert tip[:2] + [1, 0] == pytest.approx([x, w], abs=error + 1e-6 * load)
+
+
+def test_end_moment_bends_to_a_circle() -> None:
+    found = states(slender(8, moment_N_m=[2 * np.pi * RIGIDITY_N_M2]), increments_per_branch=1)
+    assert found["displacement_m"][0, -1] == pytest.approx([-1, 0, 0], abs=1e-13)
+    assert found["rotation_rad"][0, -1, 2] == pytest.approx(2 * np.pi, abs=1e-12)
+
+
+def test_bend_of_45_degrees() -> None:
+    def tip(elements: int) -> np.ndarray:
+        angle = np.pi / 4 * np.arange(elements + 1) / elements
+        places = 100 * np.stack((1 - np.cos(angle), np.sin(angle), 0 * angle), axis=1)
+        nodes = [clamp("N0", (0.0, 0.0, 0.0)), *(node(f"N{k}", place) for k, place in enumerate(places) if k)]
+        nodes[-1]["force_N"] = [0.0, 0.0, 300.0]
+        beam = {"young_modulus_Pa": 1e7, "shear_modulus_Pa": 5e6, "thermal_expansion_per_K": 0.0, "shape": "rectangle",
+                "dimensions_m": [1.0, 1.0], "shear_factors": [1.0, 1.0], "axis_y": [0.0, 0.0, 1.0]}
+        made = frame(*nodes, dimension=3, change_K=1e-6,
+                     beam=[{"nodes": [f"N{k}", f"N{k + 1}"], **beam} for k in range(elements)])
+        return np.asarray(places[-1] + states(made, increments_per_branch=1)["displacement_m"][0, -1])
+
+    coarse, fine = tip(4), tip(8)
+    # Straight beams on the curve: second order. Shear, which the reference does not have, moves the tip by 1e-3.
+    assert fine + (fine - coarse) / 3 == pytest.approx([22.113118655, 58.537050522, 40.477781496], abs=5e-3)
+
+
 def test_tip_force_in_space() -> None:
     """Small loads along both axes of a turned section, and a torque: the Timoshenko cantilever."""
     height, width, length, shear = 0.05, 0.02, 1.0, 70e9 / 2.66
@@ -176,6 +225,14 @@ def test_boom_keeps_the_friction_of_its_cradle() -> None:
     assert [event.kind for event in run.events][:1] == ["first_slip"] or len(run.events) > 0
 
 
+def test_outcomes_of_a_campaign_include_beams() -> None:
+    straight = {**WARM, "gradient_per_m": [0.0, 0.0], "temperature_fraction": 1.0}
+    case = sj.load(frame(clamp("A", (0.0, 0.0)), clamp("B", (1.0, 0.0)), change_K=10.0,
+                         beam=[{"nodes": ["A", "B"], **straight}]))
+    found = outcomes.outcomes(case, outcomes.quick(case))
+    assert found["largest_axial_force_N"] == pytest.approx(210e9 * 2e-2 * 1.2e-4, rel=1e-3)
+
+
 def test_heated_beam_between_pins_buckles() -> None:
     straight = {**WARM, "gradient_per_m": [0.0, 0.0], "temperature_fraction": 1.0}
     # α ΔT = π² I/(A L²); strains of 0.4 % and four beams change it by less than 1 %.
@@ -186,6 +243,26 @@ def test_heated_beam_between_pins_buckles() -> None:
     with pytest.raises(StatejumpError) as refused:
         states(frame(*places, change_K=1.02 * critical_K, beam=beams))
     assert refused.value.code == "buckled"
+
+
+def test_hinge_is_two_nodes_that_constraints_tie() -> None:
+    """Two cantilevers with a hinge between their tips and a load on it: each carries half."""
+    beam = {**WARM, "gradient_per_m": [0.0, 0.0]}
+    made = frame(clamp("A", (0.0, 0.0)), {**node("B", (1.0, 0.0)), "force_N": [0.0, -1e3]}, node("C", (1.0, 0.0)),
+                 clamp("D", (2.0, 0.0)), change_K=1e-6,
+                 beam=[{"nodes": ["A", "B"], **beam}, {"nodes": ["C", "D"], **beam}])
+    made["constraint"] = [{"name": f"hinge {axis}", "nodes": ["B", "C"], "directions": [axis, axis],
+                           "coefficients": [1.0, -1.0]} for axis in "xy"]
+    found = states(made)
+    assert found["displacement_m"][0, 1:3, 1] == pytest.approx([-500 / (3 * 6e7)] * 2, rel=1e-6)
+    turned = 500 / (2 * 6e7)
+    assert found["rotation_rad"][0, 1:3, 2] == pytest.approx([-turned, turned], rel=1e-6)
+
+
+def test_neglected_shear_centre_is_a_warning() -> None:
+    made = spatial(shape="channel", dimensions_m=[0.1, 0.05, 0.004, 0.006], axis_y=[0.0, 1.0, 0.0])
+    assert "beam 'beam 1': the shear centre" in parse_case(made).implausible[0]
+    assert not parse_case(spatial(shape="tube", dimensions_m=[0.05, 0.002])).implausible
 
 
 def test_beams_and_bars_together() -> None:
@@ -339,3 +416,17 @@ def test_mechanism_names_the_rotation() -> None:
     with pytest.raises(StatejumpError) as refused:
         states(made)
     assert "node 'B' mostly along y" in str(refused.value)
+
+
+def test_boom_has_a_page_and_tables(statejump: Callable[..., Outcome]) -> None:
+    for command in (["reduced", "trusses/boom"], ["report", "results/boom", "-o", "page.html"],
+                    ["export", "results/boom/reduced.h5", "--format", "vtu"]):
+        done = statejump(*command)
+        assert done.status == 0, done.errors
+
+
+@pytest.mark.parametrize("command", [["dem"], ["compare"], ["reduced", "--dynamic"], ["truss", "answers"], ["control"]])
+def test_commands_without_beams_refuse_them(statejump: Callable[..., Outcome], command: list[str]) -> None:
+    refused = statejump(*command, "trusses/boom")
+    assert refused.status == 2
+    assert "beam 'bay_1' bends" in refused.errors

@@ -27,7 +27,10 @@ constexpr double proximal_share = 1e-6;
 /// configuration is stress-free.
 Model loaded(Model model, double fraction) {
   scale_misfits(model, fraction);
-  for (Node& node : model.nodes) node.load *= fraction;
+  for (Node& node : model.nodes) {
+    node.load *= fraction;
+    node.moment *= fraction;
+  }
   return model;
 }
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from statejump.core.plausibility import clearances, moduli, strains
 from statejump.kinds.truss import checks
+from statejump.kinds.truss.elements.beam import BEAM, eccentric
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.resolve import resolve
@@ -31,7 +32,7 @@ class TrussCase(TrussSections):
 
     @property
     def implausible(self) -> tuple[str, ...]:
-        return implausible(self.resolve())
+        return (*implausible(self.resolve()), *eccentric(self.beam, self.truss.dimension))
 
     def check(self) -> None:
         """Raise StatejumpError for a contradiction between several keys."""
@@ -46,6 +47,11 @@ def implausible(truss: ResolvedTruss) -> tuple[str, ...]:
     if len(links.names):
         strain = np.abs(links.thermal_expansion_per_K * links.temperature_fraction) * largest_K[links.program]
         found += strains("link", links.names, strain, "thermal")
+    beams = truss.elements[BEAM.section]
+    if len(beams.names):
+        found += moduli("beam", beams.names, beams.young_modulus_Pa)
+        strain = np.abs(beams.thermal_expansion_per_K * beams.temperature_fraction) * largest_K[beams.program]
+        found += strains("beam", beams.names, strain, "thermal")
     for kind in JOINTS:
         if isinstance(kind, RoundParts) and (joints := truss.joints.get(kind.section)) is not None:
             radius = kind.radius_m(joints, kind.inner)

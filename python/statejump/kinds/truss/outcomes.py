@@ -10,6 +10,7 @@ from statejump.kinds import of
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
@@ -41,9 +42,11 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
         )
     if case.has_jump:
         values.update(largest_node_jump_m=float(jumps.max()), rms_node_jump_m=float(np.sqrt(np.mean(jumps**2))))
+    bending = [element.tension_N(found.states) for element in ELEMENTS if element.bends]
+    axial_forces = [found.states["axial_force_N"], *bending]
     values.update(
         friction_dissipation_J=float(heat.sum()),
         slipping_joints=float(np.count_nonzero(heat > LEAST_HEAT * heat.sum())),
-        largest_axial_force_N=float(np.abs(found.states["axial_force_N"]).max(initial=0.0)),
+        largest_axial_force_N=max(float(np.abs(axial).max(initial=0.0)) for axial in axial_forces),
     )
     return values

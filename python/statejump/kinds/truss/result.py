@@ -93,7 +93,9 @@ def scene(case: TrussCase) -> dict[str, Any]:
     for element in ELEMENTS:
         elements = truss.elements[element.section]
         if element.bends:
-            parts += [drawing.link(f"{element.section} {name}", [nodes[end] for end in ends], _Section(elements, place))
+            # Their columns are not those of links.
+            parts += [{**drawing.link(f"{element.section} {name}", [nodes[end] for end in ends],
+                                      _Section(elements, place)), "values": {}}
                       for place, (name, ends) in enumerate(zip(elements.names, element.ends(elements)))]
             continue
         for name, ends, stiffness in zip(elements.names, element.ends(elements), element.stiffness_N_per_m(elements)):

@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import References, column, distances, given_or, pairs, unit, values
-from statejump.kinds.truss.elements.beam_shapes import SHAPES, Properties
+from statejump.kinds.truss.elements.beam_shapes import ECCENTRIC, SHAPES, Properties
 from statejump.kinds.truss.elements.protocol import BetweenNodes, EndsArrays, Lines
 from statejump.kinds.truss.joints.protocol import USER, ItemColumn
 from statejump.kinds.truss.references import vector
@@ -140,6 +140,16 @@ def beam_weights_N(gravity_m_per_s2: np.ndarray, beams: Beams, nodes: int) -> np
     for end in beams.nodes.T:
         np.add.at(found, end, 0.5 * mass[:, None] * gravity_m_per_s2)
     return found
+
+
+def eccentric(items: Sequence[Beam], dimension: int) -> tuple[str, ...]:
+    """Return a sentence about beams in space whose shear centre is not their centroid."""
+    names = [item.name for item in items if item.shape in ECCENTRIC] if dimension == 3 else []
+    if not names:
+        return ()
+    others = "" if len(names) == 1 else f" and {len(names) - 1} other{'s' if len(names) > 2 else ''}"
+    return (f"beam {names[0]!r}{others}: the shear centre of the section is beside its centroid, the twist by shear "
+            "forces is neglected",)
 
 
 class BeamType(BetweenNodes[Beam, Beams]):
