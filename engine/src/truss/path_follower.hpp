@@ -82,7 +82,7 @@ struct PathFollower {
   /// Lowest level of the dashpots in the present increment. Steps with softer dashpots had no
   /// solution.
   double softest_level = 0.0;
-  bool flickers = false;     ///< Whether changes of status in this increment are no longer located.
+  bool flickers = false;  ///< Whether changes of status in this increment are no longer located.
   /// Whether so many joints are open in this increment that their changes are not located.
   bool passes_changes = false;
   double slack_level = 0.0;  ///< Level of the dashpots, see System::slack_stiffness().

@@ -155,9 +155,9 @@ bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& s
   return is_loose;
 }
 
-/// Whether elements are slack and more than `most_open` joints are open. Such elements make and lose
-/// contact all the time, nearly without force, so that most steps would end at such changes. A note
-/// reports this.
+/// Whether elements are slack and more than `most_open` joints are open. Such elements make and
+/// lose contact all the time, nearly without force, so that most steps would end at such changes. A
+/// note reports this.
 bool PathFollower::too_many_open(double when) {
   constexpr std::ptrdiff_t most_open = 8;
   if (!options.locate_events || !has_slack()) return false;

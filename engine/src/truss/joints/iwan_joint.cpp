@@ -58,8 +58,8 @@ struct Response {
   double beyond_minus = -std::numeric_limits<double>::infinity();  ///< Largest p − s − φ [m].
 };
 
-/// Force and tangent of a slide in one direction. A slider at its bound within rounding slips if the
-/// joint slips in that direction: in a short step rounding must not decide the tangent.
+/// Force and tangent of a slide in one direction. A slider at its bound within rounding slips if
+/// the joint slips in that direction: in a short step rounding must not decide the tangent.
 /// @param before positions of all sliders at the start of the step
 /// @param after receives the positions of all sliders at s, unless null
 Response respond(const IwanJoint& joint, double s, JointStatus status, const double* before,
