@@ -6,7 +6,7 @@
 namespace statejump::truss::detail {
 
 /// Tolerances and limits of Newton::solve(). `closure_tolerance` and force_rounding() belong to
-/// System, because the path uses them too. The tests `closed` and `still` in solve() combine these
+/// System, because the path uses them too. Newton::Iteration::is_solved() combines these
 /// tolerances.
 struct NewtonOptions {
   /// Tolerated force residual divided by the largest force. Rounding causes 1e-15 in a row of about

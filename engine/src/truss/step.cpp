@@ -74,12 +74,12 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   const double half = 0.5 * options.energy_tolerance * scale;
   const double lost = std::abs(gained);
   const double stored = std::abs(next.elastic_energy) + std::abs(next.load_potential) + heat;
-  // Rounding error of the energies, plus the work that the rounding errors of bar forces do in this
+  // Rounding error of the energies, plus the work that the rounding errors of forces do in this
   // step.
   double rounding =
       4.0 * std::numeric_limits<double>::epsilon() * (stored + std::abs(next.thermal_work)) +
       system.force_rounding(to) * length_of(to - z, system.displacements()) *
-          std::sqrt(static_cast<double>(model.links.size()));
+          std::sqrt(static_cast<double>(element_count(model)));
   // If parts expand freely, all work is rounding, or an error caused by the replacement of the path
   // by chords.
   if (stored < lost) rounding += system.force_rounding(to) * system.reach(to);
