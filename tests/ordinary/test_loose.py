@@ -18,7 +18,6 @@ import worker
     pytest.param("k_truss", 10, id="an_element_under_compression_hangs_slack_within_its_play"),
     pytest.param("k_truss", 9007, id="a_journal_that_finds_no_place_at_the_start_comes_to_rest_against_dashpots"),
     pytest.param("mast", 3021, id="steps_along_directions_that_hardly_anything_holds_may_grow"),
-    pytest.param("scissor", 9018, id="dependent_latches_have_many_moments_but_one_motion"),
     pytest.param("ring", 102, id="ways_on_that_rounding_does_not_tell_apart_are_one"),
 ])
 def test_finishes(family: str, seed: int) -> None:

@@ -73,16 +73,15 @@ std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
   return matrix;
 }
 
-/// Smallest pivot of the symmetric part, scaled to a unit diagonal: above sqrt(epsilon) if it is
-/// positive definite, above -sqrt(epsilon) if it is positive semidefinite.
-double least_pivot(Eigen::MatrixXd matrix) {
-  if (matrix.size() == 0) return 1.0;  // no candidates
+bool has_positive_symmetric_part(Eigen::MatrixXd matrix) {
+  if (matrix.size() == 0) return true;  // no candidates
   // Scaling to a unit diagonal makes the rounding tolerance uniform.
-  if (!(matrix.diagonal().array() > 0.0).all()) return -1.0;
+  if (!(matrix.diagonal().array() > 0.0).all()) return false;
   const VectorXd unit = matrix.diagonal().cwiseSqrt().cwiseInverse();
   matrix = unit.asDiagonal() * matrix * unit.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> factors(0.5 * (matrix + matrix.transpose()));
-  return factors.info() == Eigen::Success ? factors.vectorD().minCoeff() : -1.0;
+  const double rounding = std::sqrt(epsilon);
+  return factors.info() == Eigen::Success && (factors.vectorD().array() > rounding).all();
 }
 
 }  // namespace
@@ -153,8 +152,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     const auto of = prepare(*system_, z, target, start, candidates, at_, factor_);
     if (!of) return answer;
     const auto matrix = complementarity_matrix(*of);
-    const double pivot = matrix ? least_pivot(*matrix) : -1.0;
-    if (pivot > std::sqrt(epsilon) && !found.empty()) {
+    const bool is_unique = matrix && has_positive_symmetric_part(*matrix);
+    if (is_unique && !found.empty()) {
       answer.count = Continuation::one;
       answer.statuses = found;
       return answer;
@@ -226,11 +225,9 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
                                        [](const Motion& one) { return one.index >= 0; });
       if (count == 0 && !all[g].examined) examined = false;
       // The indices of all solutions sum to one (degree of the equations). Without unstable
-      // solutions and mechanisms, several stable solutions are therefore equal up to rounding. The
-      // solutions of a monotone problem have equal displacements, also with dependent constraints.
-      const bool is_monotone = pivot > -std::sqrt(epsilon);
-      const bool is_one = count == 1 || (count > 1 && count == std::ssize(motions) &&
-                                         (!all[g].singular || is_monotone));
+      // solutions and mechanisms, several stable solutions are therefore equal up to rounding.
+      const bool is_one =
+          count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular);
       if (is_one) {
         stable.push_back(*std::min_element(
             motions.begin(), motions.end(), [&](const Motion& one, const Motion& other) {
