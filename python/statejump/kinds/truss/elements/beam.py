@@ -254,7 +254,7 @@ class BeamType(BetweenNodes[Beam, Beams]):
         return np.zeros(len(elements.names))
 
     def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
-        return np.asarray(states["beam_force_second_N"][:, :, 0])
+        return np.asarray(states["beam_force_second_N"][..., 0])
 
     def lines(self, elements: Beams) -> list[Lines]:
         return [Lines(np.full(len(elements.names), True), VIOLET, "beam", width=3.0)]
