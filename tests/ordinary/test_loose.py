@@ -31,9 +31,12 @@ def test_a_snap_within_the_play_is_noted() -> None:
 
 
 def test_many_slack_joints_are_not_located_and_noted() -> None:
-    case = structures.make("mast", 9079).document
-    coarse, fine = (sj.load({**case, "reduced": {"increments_per_branch": number}}).reduced() for number in (50, 200))
+    case = structures.make("tower", 9154).document
+    coarse, fine = (
+        sj.load({**case, "reduced": {**case.get("reduced", {}), "increments_per_branch": number}}).reduced()
+        for number in (200, 400))
     assert [note.code for note in coarse.warnings if isinstance(note, Note)].count("not_located") == 1
-    jumps_m = [run["displacement_m"][-1] - run["displacement_m"][0] for run in (coarse, fine)]
-    # A change of contact is late by at most one increment, a fiftieth of the motion; friction keeps a part of it.
-    assert np.abs(jumps_m[1] - jumps_m[0]).max() < 0.02 * np.abs(fine["displacement_m"]).max()
+    # A change of contact is found at most one increment late, a two-hundredth of the motion of a branch.
+    moved_m = [run["displacement_m"] for run in (coarse, fine)]
+    jumps_m = [moved[-1] - moved[0] for moved in moved_m]
+    assert np.abs(jumps_m[1] - jumps_m[0]).max() < np.ptp(moved_m[1], axis=0).max() / 200

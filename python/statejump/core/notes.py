@@ -67,7 +67,7 @@ NOTES: dict[str, str] = {
     ),
     "not_located": (
         "many elements are slack {at}: from there the times at which their joints make and lose contact are resolved "
-        "to one increment; more reduced.increments_per_branch resolve them better"
+        "to one increment, and the jump may depend on it; compare with more reduced.increments_per_branch"
     ),
     "several_reactions": (
         "{named}: constrain a displacement more than once {at}; the reactions are one solution of many, the "

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 ENDINGS = {
     "_N_m_s_per_rad": "N m s/rad", "_N_m_per_rad": "N m/rad", "_kg_per_m3": "kg/m3", "_rad_per_s": "rad/s",
     "_kg_m2": "kg m2", "_m_per_s2": "m/s2", "_N_per_m": "N/m", "_m_per_s": "m/s", "_N_per_K": "N/K", "_per_K": "1/K",
-    "_N_m": "N m", "_rad": "rad", "_kg": "kg", "_Pa": "Pa", "_m2": "m2", "_m4": "m4", "_m": "m", "_K": "K", "_N": "N",
-    "_J": "J", "_s": "s", "_W": "W",
+    "_per_m": "1/m", "_N_m": "N m", "_rad": "rad", "_kg": "kg", "_Pa": "Pa", "_m2": "m2", "_m4": "m4", "_m": "m",
+    "_K": "K", "_N": "N", "_J": "J", "_s": "s", "_W": "W",
 }
 
 

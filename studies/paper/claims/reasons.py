@@ -16,6 +16,9 @@ class Reasons(str):
         made.codes = codes
         return made
 
+    def __getnewargs__(self) -> tuple[str, tuple[str, ...]]:
+        return str(self), self.codes
+
 
 def because(**parts: str) -> Reasons:
     """Return reasons from their codes and texts."""

@@ -11,6 +11,9 @@ from statejump.core.notes import Note
 from statejump.core.units import plain
 from statejump.kinds.truss.resolved import Links, ResolvedTruss
 
+# Codes of the notes about joints, by the engine's kind of note.
+CODES = {"redundant_constraint": "redundant_constraint", "slack": "slack", "snap": "snap", "not_located": "not_located",
+         "not_unique": "several_reactions"}
 MOST_NAMED = 8  # largest number of names in a sentence, followed by the number of further names
 
 
@@ -24,9 +27,8 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> Note:
     if note["kind"] == "large_start":
         size_m = float(np.ptp(truss.nodes.position_m, axis=0).max())
         return Note("large_start", value=note["value"], share=note["value"] / size_m)
-    code = "several_reactions" if note["kind"] == "not_unique" else note["kind"]
-    return Note(code, named=_named(note["joints"]), at=at, value=note["value"], joints=tuple(note["joints"]),
-                temperature_change_K=note["temperature_change_K"], time_s=note["time_s"])
+    return Note(CODES[note["kind"]], named=_named(note["joints"]), at=at, value=note["value"],
+                joints=tuple(note["joints"]), temperature_change_K=note["temperature_change_K"], time_s=note["time_s"])
 
 
 def _named(joints: Sequence[tuple[str, str]]) -> str:
