@@ -397,7 +397,7 @@ class BeamStep {
 /// The beam at a state, for energy, forces and tangent.
 /// @throws OutOfRange if an end rotates by more than 1 rad relative to the beam
 inline BeamStep beam_step(const Beam& beam, const BeamState& at) {
-  const BeamStep made(beam, at);
+  BeamStep made(beam, at);
   require(made.largest_local_rotation() <= BeamStep::largest_rotation,
           "rotation of an end relative to the beam", made.largest_local_rotation(),
           "at most 1 rad; divide the beam into more elements");

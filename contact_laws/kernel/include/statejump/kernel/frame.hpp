@@ -76,7 +76,7 @@ template <class A>
 ///     unchanged.
 inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const Vector3& n_new,
                          double twist_angle = 0.0) {
-  const Vector3 turned = transport_untwisted<Single>(tangential, n_old, n_new, true);
+  Vector3 turned = transport_untwisted<Single>(tangential, n_old, n_new, true);
   if (twist_angle == 0.0 || turned.isZero(0.0)) return turned;
   return std::cos(twist_angle) * turned + std::sin(twist_angle) * cross(n_new, turned);
 }

@@ -40,8 +40,8 @@ AngleCoefficient angle_series(const std::array<double, terms>& c, double squared
 
 /// Rotation vector of a rotation matrix [rad], unique below π.
 inline Vector3 rotation_vector(const Matrix3& turned) {
-  const Vector3 v(0.5 * (turned(2, 1) - turned(1, 2)), 0.5 * (turned(0, 2) - turned(2, 0)),
-                  0.5 * (turned(1, 0) - turned(0, 1)));
+  Vector3 v(0.5 * (turned(2, 1) - turned(1, 2)), 0.5 * (turned(0, 2) - turned(2, 0)),
+            0.5 * (turned(1, 0) - turned(0, 1)));
   const double sine = v.norm();
   if (sine == 0.0) return v;
   return std::atan2(sine, 0.5 * (turned.trace() - 1.0)) / sine * v;
