@@ -85,9 +85,9 @@ MUTATIONS = [
              "damping_sum + std::sqrt(damping_sum * damping_sum + 4.0 * mass * stiffness_sum)",
              "std::sqrt(4.0 * mass * stiffness_sum) + 0.0 * damping_sum", "contact_law_test"),
     Mutation("history_not_rotated", "frame.hpp",
-             "  const Vector3 turned = transport_untwisted<Single>(",
+             "  Vector3 turned = transport_untwisted<Single>(",
              "  if (n_old.x() + n_new.x() + twist_angle < 1e9) return tangential;\n"
-             "  const Vector3 turned = transport_untwisted<Single>(", "joint_test"),
+             "  Vector3 turned = transport_untwisted<Single>(", "joint_test"),
     Mutation("history_only_projected", "frame.hpp", "A::negate(have_rotation<A>(n_old, n_new))",
              "true", "joint_test"),
     Mutation("twist_left_handed", "frame.hpp", "cross(n_new, turned)", "cross(turned, n_new)",
