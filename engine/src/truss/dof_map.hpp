@@ -54,7 +54,7 @@ struct Elimination;
 
 /// Numbering of the independent degrees of freedom of all nodes, node after node: its translations,
 /// then its rotations. Constraints determine the dependent ones; see Elimination. Sites are
-/// numbered as by rotation_of(); a model without rotations has no sites of rotations.
+/// numbered as by rotation_site(); a model without rotations has no sites of rotations.
 class DofMap {
  public:
   /// @pre The model outlives this object.

@@ -201,7 +201,7 @@ Path solve(const Model& model, const Options& options) {
       bool foresaw = false;
       int unconfirmed = 0;
       int swinging = 0;  // failed steps while elements were slack
-      follower.passes_changes = follower.too_many_open(follower.time);
+      follower.passes_changes = follower.note_many_open(follower.time);
       follower.flickers = follower.passes_changes;
       follower.locates = !follower.flickers;
       int located = 0;  // changes while elements were slack

@@ -155,7 +155,7 @@ struct PathFollower {
   void refuse_buckled(double when);
   /// Whether elements are slack now or were earlier.
   bool has_slack() const { return is_slack || is_loose || noted.count(NoteKind::slack) > 0; }
-  bool too_many_open(double when);
+  bool note_many_open(double when);
   bool stiffen_slack(const Statuses& statuses);
   bool damp();
   StepEnd step_to(double target, double tolerance);

@@ -107,7 +107,7 @@ Regions regions_of(const Model& model, const DofMap& dofs, const ElementFrames& 
   }
   if (!dofs.has_rotations()) return made;
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-    const int site = rotation_of(model, static_cast<int>(n));
+    const int site = rotation_site(model, static_cast<int>(n));
     if (model.nodes[n].moment.isZero(0.0) || dofs.at(site).freedoms == 0) continue;
     region(region_of_node[index(site)]).loaded.push_back(site);
   }

@@ -136,8 +136,9 @@ void PathFollower::refuse_buckled(double when) {
 /// Adds a note about those of the joints that no note of this kind has named before.
 void PathFollower::note(NoteKind kind, double when, const std::vector<int>& joints, double value) {
   Note made{kind, when, model.temperature_change(0, 1.0, when), {}, value};
+  std::set<int>& named_before = noted[kind];
   for (const int i : joints) {
-    if (noted[kind].insert(i).second) made.joints.push_back(named(model, i));
+    if (named_before.insert(i).second) made.joints.push_back(named(model, i));
   }
   if (made.joints.empty() && !joints.empty()) return;
   path.notes.push_back(std::move(made));
@@ -155,17 +156,17 @@ bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& s
   return is_loose;
 }
 
-/// Whether elements are slack and more than `most_open` joints are open. Such elements make and
-/// lose contact all the time, nearly without force, so that most steps would end at such changes. A
-/// note reports this.
-bool PathFollower::too_many_open(double when) {
+/// Adds a note once if elements are slack and more than `most_open` joints are open. Such elements
+/// make and lose contact all the time, nearly without force, so that most steps would end at such
+/// changes.
+/// @returns whether this is so
+bool PathFollower::note_many_open(double when) {
   constexpr std::ptrdiff_t most_open = 8;
   if (!options.locate_events || !has_slack()) return false;
   if (std::count(origin.statuses.begin(), origin.statuses.end(), JointStatus::open) <= most_open) {
     return false;
   }
   if (noted.count(NoteKind::not_located) == 0) note(NoteKind::not_located, when, {});
-  noted[NoteKind::not_located];
   return true;
 }
 

@@ -107,7 +107,7 @@ void System::check_rotations(const ElementState& at) const {
     if (dofs_.at(nodes + n).freedoms < 2) continue;
     const Node& node = model_->nodes[index(n)];
     const double rotation = at.moved(nodes + n).norm() / node.arm;
-    if (rotation <= largest_rotation) continue;
+    if (rotation <= largest_node_rotation) continue;
     throw kernel::OutOfRange("node '" + node.name + "'", "rotation", rotation,
                              "at most 5.5 rad about changing axes");
   }

@@ -250,7 +250,7 @@ class System {
               const StepStart& start, JointModel joints, double opening) const;
 
   Vector3d displacement(int node, const VectorXd& z) const { return dofs_.displacement(node, z); }
-  /// Load on a node or, for its site rotation_of(), moment over Node::arm [N].
+  /// Load on a node or, for its site rotation_site(), moment over Node::arm [N].
   Vector3d load_on(int site) const;
   /// Computes the displacements of all sites [m] at z once, to evaluate many joints at this state.
   void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {

@@ -57,7 +57,7 @@ struct Node {
 
 /// Largest rotation of a node that may rotate about several axes [rad]. At 2π its rotation vector
 /// is not unique.
-constexpr double largest_rotation = 5.5;
+constexpr double largest_node_rotation = 5.5;
 
 /// A term of a constraint: displacement of a node along a vector, times the vector's length.
 struct ConstraintTerm {
@@ -108,7 +108,7 @@ struct Model : Elements {
 
 /// The site of a node's rotation. Sites are places where displacements are measured: first the
 /// positions of all nodes, then their rotations, in metres at the distance Node::arm.
-inline int rotation_of(const Model& model, int node) {
+inline int rotation_site(const Model& model, int node) {
   return static_cast<int>(model.nodes.size()) + node;
 }
 

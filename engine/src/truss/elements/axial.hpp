@@ -19,16 +19,25 @@ struct Axial {
   double energy() const { return stiffness > 0.0 ? 0.5 * tension * tension / stiffness : 0.0; }
 };
 
+/// Length minus stress-free length [m]. Differences of lengths avoid the force error 1e-16 E A that
+/// the rounding of a length would cause.
+/// @param growth from the reference configuration [m]
+/// @param drawn length in the reference configuration [m]
+/// @param free stress-free length at ΔT = 0 [m]; @param expansion α [1/K]; @param change ΔT [K]
+inline double stretch(double growth, double drawn, double free, double expansion = 0.0,
+                      double change = 0.0) {
+  return growth + (drawn - free) - free * expansion * change;
+}
+
 /// Tension and stiffness of a bar.
 /// @param change ΔT of the bar [K]
 inline Axial axial(const Bar& bar, double elongation_from_drawn, double drawn_length,
                    double change) {
   const double l0 = bar.stress_free_length;
-  // Differences avoid the force error 1e-16 E A that the rounding of a length would cause.
-  const double stretch =
-      elongation_from_drawn + (drawn_length - l0) - l0 * bar.thermal_expansion * change;
   const double stiffness = bar.axial_stiffness / thermal::length(l0, bar.thermal_expansion, change);
-  return {stiffness * stretch, stiffness};
+  return {
+      stiffness * stretch(elongation_from_drawn, drawn_length, l0, bar.thermal_expansion, change),
+      stiffness};
 }
 
 inline Lengths lengths(const std::array<int, 2>& nodes, const ElementState& state) {
@@ -83,5 +92,10 @@ inline double drawn_length(const Model& model, int first, int second) {
 /// @throws kernel::OutOfRange if the two nodes of an element coincide
 void check_length(const char* kind, const std::string& name, const Model& model, int first,
                   int second);
+
+/// @param fraction ΔT of the element over that of its program
+/// @throws kernel::OutOfRange if an element has no length at a temperature of its program
+void check_expansion(const char* kind, const std::string& name, double thermal_expansion,
+                     double fraction, const TemperatureRange& range);
 
 }  // namespace statejump::truss::detail

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/truss/elements/bar.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "statejump/kernel/require.hpp"
 #include "statejump/truss/model.hpp"
 #include "statejump/truss/motion.hpp"
 #include "truss/elements/axial.hpp"
@@ -52,13 +50,8 @@ std::span<const Output> Bar::outputs() {
 
 void Bar::validate(const Model& model, std::span<const TemperatureRange> ranges) const {
   detail::check_length(kind, name, model, first, second);
-  const TemperatureRange& range = ranges[index(program)];
-  const double per_kelvin = thermal_expansion * temperature_fraction;
-  const double strain = std::min(per_kelvin * range.lowest, per_kelvin * range.highest);
-  if (!(std::isfinite(strain) && strain > -1)) {
-    throw kernel::OutOfRange(std::string(kind) + " '" + name + "'", "thermal_expansion",
-                             thermal_expansion, "finite and such that a length is left [1/K]");
-  }
+  detail::check_expansion(kind, name, thermal_expansion, temperature_fraction,
+                          ranges[index(program)]);
 }
 
 ElementScale Bar::scale(const Frame& frame, const std::vector<Eigen::Vector3d>& drawn) const {

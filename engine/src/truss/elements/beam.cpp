@@ -66,8 +66,7 @@ BeamStep step_at(const Beam& beam, const Beam::Frame& frame, const Vector3d& dra
   const std::array<double, 2> curvature = curvature_per_kelvin(beam);
   kernel::BeamState state;
   state.along = length.along;
-  // Differences avoid the force error 1e-16 E A that the rounding of a length would cause.
-  state.stretch = length.growth + (length.drawn - l0) - l0 * beam.thermal_expansion * change;
+  state.stretch = detail::stretch(length.growth, length.drawn, l0, beam.thermal_expansion, change);
   state.first = kernel::rotation_of(moved.rotations[0]);
   state.second = kernel::rotation_of(moved.rotations[1]);
   state.free_length = thermal::length(l0, beam.thermal_expansion, change);
@@ -144,13 +143,8 @@ std::span<const Output> Beam::outputs() {
 
 void Beam::validate(const Model& model, std::span<const TemperatureRange> ranges) const {
   detail::check_length(kind, name, model, first, second);
-  const TemperatureRange& range = ranges[index(program)];
-  const double per_kelvin = thermal_expansion * temperature_fraction;
-  const double strain = std::min(per_kelvin * range.lowest, per_kelvin * range.highest);
-  if (!(std::isfinite(strain) && strain > -1)) {
-    throw kernel::OutOfRange(named(*this), "thermal_expansion", thermal_expansion,
-                             "finite and such that a length is left [1/K]");
-  }
+  detail::check_expansion(kind, name, thermal_expansion, temperature_fraction,
+                          ranges[index(program)]);
   const Vector3d along =
       (model.nodes[index(second)].position - model.nodes[index(first)].position).normalized();
   const double skew = along.dot(axis_y);
@@ -162,7 +156,7 @@ void Beam::validate(const Model& model, std::span<const TemperatureRange> ranges
 Beam::Frame Beam::frame(const Model& model) const {
   const Node& one = model.nodes[index(first)];
   const Node& other = model.nodes[index(second)];
-  Frame made{{first, second, rotation_of(model, first), rotation_of(model, second)},
+  Frame made{{first, second, rotation_site(model, first), rotation_site(model, second)},
              {one.arm, other.arm},
              {}};
   made.beam.axial = axial_stiffness;

@@ -15,10 +15,8 @@ using detail::Lengths;
 
 namespace {
 
-/// Elongation [m]. It is computed from differences of lengths, because the rounding of a length
-/// would cause noise in the force of a stiff spring.
 double stretch(const Spring& spring, const Lengths& length) {
-  return (length.drawn - spring.free_length) + length.growth;
+  return detail::stretch(length.growth, length.drawn, spring.free_length);
 }
 
 Axial axial(const Spring& spring, const Lengths& length) {

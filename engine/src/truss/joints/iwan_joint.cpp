@@ -167,9 +167,10 @@ JointFrame IwanJoint::frame(const Model& model) const {
 void IwanJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const {
   const double s = slide_of(*this, trial);
   detail::push_along(trial, axis, writer);
-  Response now = respond(*this, s, status, trial.history, nullptr);
-  if (!is_slip(status)) {
-    now = {};
+  Response now;
+  if (is_slip(status)) {
+    now = respond(*this, s, status, trial.history, nullptr);
+  } else {
     int i = 0;
     for_each_element(*this, [&](double stiffness, double, double, double) {
       now.force += stiffness * (s - trial.history[i++]);

@@ -395,11 +395,11 @@ TEST(DofMap, NumbersRotationsBehindTheTranslationsOfTheirNode) {
   EXPECT_EQ(dofs.sites(), 8u);
   EXPECT_EQ(dofs.at(1).row, 3);
   EXPECT_EQ(dofs.at(1).freedoms, 2);
-  EXPECT_EQ(dofs.at(rotation_of(model, 1)).row, 5);
-  EXPECT_EQ(dofs.at(rotation_of(model, 1)).freedoms, 3);
-  EXPECT_EQ(dofs.at(rotation_of(model, 0)).freedoms, 0);
+  EXPECT_EQ(dofs.at(rotation_site(model, 1)).row, 5);
+  EXPECT_EQ(dofs.at(rotation_site(model, 1)).freedoms, 3);
+  EXPECT_EQ(dofs.at(rotation_site(model, 0)).freedoms, 0);
   EXPECT_EQ(dofs.at(2).row, 8);
-  EXPECT_EQ(dofs.at(rotation_of(model, 3)).row, 9);
+  EXPECT_EQ(dofs.at(rotation_site(model, 3)).row, 9);
   EXPECT_EQ(dofs.at(-1).freedoms, 0);
   for (const auto& [dof, node] :
        std::vector<std::pair<int, int>>{{2, 0}, {3, 1}, {7, 1}, {8, 2}, {9, 3}, {11, 3}}) {

@@ -38,7 +38,7 @@ struct Beam {
   static constexpr const char* table = "beams";
   static constexpr int dofs_per_node = 6;
   struct Frame {
-    std::array<int, 4> nodes;    ///< Both nodes, then their rotations, see rotation_of().
+    std::array<int, 4> nodes;    ///< Both nodes, then their rotations, see rotation_site().
     std::array<double, 2> arms;  ///< Node::arm of both nodes [m].
     kernel::Beam beam;
   };

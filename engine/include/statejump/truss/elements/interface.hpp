@@ -41,7 +41,7 @@ class ElementState {
   Eigen::Vector3d drawn_between(int from, int to) const {
     return (*drawn_)[static_cast<std::size_t>(to)] - (*drawn_)[static_cast<std::size_t>(from)];
   }
-  /// Displacement of a node or, for its site rotation_of(), rotation vector times Node::arm [m].
+  /// Displacement of a node or, for its site rotation_site(), rotation vector times Node::arm [m].
   Eigen::Vector3d moved(int site) const { return moved_->col(site); }
   /// Displacement of a node relative to another one [m].
   Eigen::Vector3d moved_between(int from, int to) const {
@@ -83,7 +83,7 @@ struct Dashpot {
 /// |---|---|
 /// | `kind` | name in messages |
 /// | `table` | name of its table in the case |
-/// | `dofs_per_node` | 3: translations; 6: translations and rotations, see rotation_of() |
+/// | `dofs_per_node` | 3: translations; 6: translations and rotations, see rotation_site() |
 /// | `parameters()` | key, unit, range and source of each parameter |
 ///  `outputs()`, `describe()` | numbers that are output at every state |
 /// | `Frame`, `frame()` | its nodes (−1: ground) with sites of rotations, and fixed directions |
