@@ -84,14 +84,24 @@ class Source:
             skip = count - 1
             yield from self._lines(self._inside(Line.of(place + 1, name), given, depth), given, depth + 1)
 
+    def has(self, given: str) -> bool:
+        """Return whether a named file exists inside the folder of the deck."""
+        path = self._path(given)
+        return path is not None and path.is_relative_to(self.folder) and is_file(path)
+
+    def _path(self, given: str) -> Path | None:
+        try:
+            return (self.folder / given).resolve()
+        except (OSError, RuntimeError, ValueError):
+            return None
+
     def _inside(self, line: int, given: str, depth: int) -> Path:
         shown = repr(printable(given))[:60]
         if depth >= DEEPEST:
             raise Unreadable(code="includes_too_deep", file=self.path, line=line, deepest=DEEPEST)
-        try:
-            path = (self.folder / given).resolve()
-        except (OSError, RuntimeError, ValueError):
-            raise Unreadable(code="no_file_name", file=self.path, line=line, included=shown) from None
+        path = self._path(given)
+        if path is None:
+            raise Unreadable(code="no_file_name", file=self.path, line=line, included=shown)
         if not path.is_relative_to(self.folder):
             raise Unreadable(code="include_outside", file=self.path, line=line, included=shown)
         if not is_file(path):

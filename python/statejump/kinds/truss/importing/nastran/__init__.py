@@ -10,7 +10,7 @@ from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
 from statejump.kinds.truss.importing.model import BENDING, Deck, Options
 from statejump.kinds.truss.importing.nastran import bodies, control, elements, loads, nodes, properties
-from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
+from statejump.kinds.truss.importing.nastran.cards import Card, number_of, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
 
@@ -107,7 +107,7 @@ def _check_fields(reader: Reader, card: Card) -> None:
         field = known.field(place)
         if field is None:
             raise reader.fail(card, "deck_bad_syntax", problem=f"it has no field {place + 2}")
-        if field.use == REFUSED and finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e"))) != 0:
+        if field.use == REFUSED and number_of(text) != 0:
             name = field.name if field.name != "-" else f"field {place + 2}"
             reader.deck.refuse(f"{card.name}.{name}", field.why, card.line)
 

@@ -65,7 +65,8 @@ def included(lines: list[str], place: int) -> tuple[str, int] | None:
 
 def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
     """Divide a deck: return the lines of executive and case control, and the cards of the bulk data."""
-    lines = list(Source(deck.path, lambda lines, place: _included(deck, lines, place)))
+    source = Source(deck.path, lambda lines, place: _included(deck, source, lines, place))
+    lines = list(source)
     begin = next((place for place, (_, line) in enumerate(lines) if BEGIN_BULK.match(line)), None)
     if begin is None:
         for number, line in lines:
@@ -76,20 +77,16 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
             _cards(deck, lines[0 if begin is None else begin + 1:]))
 
 
-def _included(deck: Deck, lines: list[str], place: int) -> tuple[str, int] | None:
+def _included(deck: Deck, source: Source, lines: list[str], place: int) -> tuple[str, int] | None:
     """Return the file of an INCLUDE. In the executive control, a file of the computing centre is refused like a card,
     because the user may know that it has no influence."""
     found = included(lines, place)
     if found is None or not any(line.strip().upper() == "CEND" for line in lines[place:]):
         return found
-    try:
-        path = (deck.path.resolve().parent / found[0]).resolve()
-        beside = path.is_relative_to(deck.path.resolve().parent) and path.is_file()
-    except (OSError, RuntimeError, ValueError):
-        beside = False
-    if not beside:
-        deck.refuse("INCLUDE", "executive_include", place + 1, included=quoted(found[0]))
-    return found if beside else None
+    if source.has(found[0]):
+        return found
+    deck.refuse("INCLUDE", "executive_include", place + 1, included=quoted(found[0]))
+    return None
 
 
 def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
@@ -247,9 +244,14 @@ def _repeated(deck: Deck, number: int, rule: list[str], last: list[str]) -> list
     return made
 
 
+def number_of(text: str) -> float | None:
+    """Return the number of a field, also with Fortran's exponents 1.d5 and 1.+5; None if it is none."""
+    return finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e")))
+
+
 def _value(deck: Deck, number: int, text: str, other: str) -> float:
     """Return a number of a replicated field. :raises Unreadable: it is none"""
-    found = finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e")))
+    found = number_of(text)
     if found is None:
         raise deck.fail(number, "deck_bad_syntax", problem=f"{quoted(other)} and {quoted(text)} cannot be added")
     return found
@@ -272,7 +274,7 @@ def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
         count = 4 if words[0].endswith("*") or words[0].startswith("*") else 8
         beyond = words[count + 1:]
         marked = bool(beyond) and beyond[0][:1] in ("+", "*")
-        if beyond and not marked and (any(beyond[1:]) or _is_number(beyond[0])):
+        if beyond and not marked and (any(beyond[1:]) or number_of(beyond[0]) is not None):
             return words[0], words[1:], ""  # continues without a mark, because a mark is never a number
         if any(beyond[1:]):
             raise deck.fail(number, "deck_bad_syntax", problem=f"a line of more than {count + 2} free fields")
@@ -308,7 +310,3 @@ def _words(deck: Deck, number: int, line: str) -> list[str]:
             words.append(value)
         words += [words[-1]] * (len(word) - len(value))  # slashes repeat the field before them
     return words
-
-
-def _is_number(text: str) -> bool:
-    return finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e"))) is not None

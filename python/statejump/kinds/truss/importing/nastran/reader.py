@@ -6,10 +6,9 @@ from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
 from typing import Any
 
-from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.coordinates import Frame
 from statejump.kinds.truss.importing.model import Bar, Deck, quoted
-from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card
+from statejump.kinds.truss.importing.nastran.cards import Card, number_of
 
 
 @dataclass
@@ -69,7 +68,7 @@ class Reader:
             return default
         if not text:
             raise self.fail(card, "deck_incomplete", needed=f"field {place + 2}")
-        value = finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e")))
+        value = number_of(text)
         if value is None:
             raise self.deck.fail(card.line, "deck_bad_number", text=quoted(text), wanted="a finite number")
         return value
