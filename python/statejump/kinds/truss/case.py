@@ -41,17 +41,13 @@ class TrussCase(TrussSections):
 
 def implausible(truss: ResolvedTruss) -> tuple[str, ...]:
     """Return one sentence for each kind of implausible value, about the item with the worst value."""
-    links = truss.links
     largest_K = np.abs(truss.temperature_ranges_K).max(axis=1)
-    found = list(moduli("link", links.names, links.young_modulus_Pa))
-    if len(links.names):
-        strain = np.abs(links.thermal_expansion_per_K * links.temperature_fraction) * largest_K[links.program]
-        found += strains("link", links.names, strain, "thermal")
-    beams = truss.elements[BEAM.section]
-    if len(beams.names):
-        found += moduli("beam", beams.names, beams.young_modulus_Pa)
-        strain = np.abs(beams.thermal_expansion_per_K * beams.temperature_fraction) * largest_K[beams.program]
-        found += strains("beam", beams.names, strain, "thermal")
+    found: list[str] = []
+    for section, parts in (("link", truss.links), (BEAM.section, truss.elements[BEAM.section])):
+        found += moduli(section, parts.names, parts.young_modulus_Pa)
+        if len(parts.names):
+            strain = np.abs(parts.thermal_expansion_per_K * parts.temperature_fraction) * largest_K[parts.program]
+            found += strains(section, parts.names, strain, "thermal")
     for kind in JOINTS:
         if isinstance(kind, RoundParts) and (joints := truss.joints.get(kind.section)) is not None:
             radius = kind.radius_m(joints, kind.inner)

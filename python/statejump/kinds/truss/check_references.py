@@ -14,6 +14,7 @@ from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
 from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
 from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.beam import BEAM
 from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
@@ -67,18 +68,19 @@ def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]
 
 def _programs(case: TrussSections) -> None:
     programs, places = by_name(case.program), ItemIndex(case.program)
-    followers: Iterator[tuple[Any, Any]] = (
-        (items, where) for items, where in (
-            (case.link, lambda name: {"item": f"link {name!r}"}),
-            *((joint.listed(case), joint.where) for joint in _WITH_TEMPERATURE)))
-    for items, where in followers:
-        for item in where_wrong(items, lambda items: places.of(items, "program") == UNKNOWN):
-            if item.program is not None:
-                known_name("program", item.program, item.program, programs, "program", **where(item.name))
-    for beam in case.beam:
-        if beam.gradient_program is not None:
-            known_name("gradient_program", beam.gradient_program, beam.gradient_program, programs, "program",
-                       item=f"beam {beam.name!r}")
+    followers: tuple[tuple[str, Any, Any], ...] = (
+        ("program", case.link, lambda name: {"item": f"link {name!r}"}),
+        *(("program", joint.listed(case), joint.where) for joint in _WITH_TEMPERATURE),
+        ("gradient_program", case.beam, BEAM.where))
+
+    def unknown(key: str, items: ItemColumns[Any]) -> np.ndarray:
+        return places.of(items, key) == UNKNOWN
+
+    for key, items, where in followers:
+        for item in where_wrong(items, partial(unknown, key)):
+            name = getattr(item, key)
+            if name is not None:
+                known_name(key, name, name, programs, "program", **where(item.name))
 
 
 def _expansions(case: TrussSections) -> None:

@@ -139,9 +139,6 @@ def check(case: TrussCase) -> None:
     """Raise StatejumpError, before anything is solved, if the DEM cannot represent an item of the case."""
     truss = case.resolve()
     check_at_rest(truss)
-    bending = truss.bending()
-    if bending is not None:
-        raise refuse(case, "dem_element", f"{bending[0]} {bending[1]!r} bends, the DEM has no beams yet")
     for index in np.flatnonzero(truss.bodies.own)[:1]:
         raise refuse(case, "dem_body", f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
     for name in truss.constraints.names[:1]:
@@ -160,6 +157,14 @@ def check(case: TrussCase) -> None:
         if unable is not None:
             name, why = unable
             raise refuse(case, "dem_joint", f"{joint.section} {name!r} {why}", joint=name)
+    for element in ELEMENTS:
+        elements = truss.elements[element.section]
+        unable_element = element.dem_refuses(elements)
+        if element.not_in_dem and elements.names:
+            unable_element = elements.names[0], "dem_element", element.not_in_dem
+        if unable_element is not None:
+            name, code, why = unable_element
+            raise refuse(case, code, f"{element.section} {name!r} {why}")
     free = ~blocked_directions(truss).all(axis=1)
     for index in np.flatnonzero(free & (mass <= 0))[:1]:
         raise refuse(case, "dem_node_without_mass", f"node {nodes.names[index]!r} has no mass because no link ends "
@@ -176,14 +181,6 @@ def check(case: TrussCase) -> None:
                                        f"{nodes.names[node]!r} a second contact part, in the DEM a node has one",
                                  joint=name, nodes=(nodes.names[node],))
                 roles[node] = role
-    for element in ELEMENTS:
-        elements = truss.elements[element.section]
-        unable_element = element.dem_refuses(elements)
-        if element.not_in_dem and elements.names:
-            unable_element = elements.names[0], "dem_element", element.not_in_dem
-        if unable_element is not None:
-            name, code, why = unable_element
-            raise refuse(case, code, f"{element.section} {name!r} {why}")
     if truss.dimension == 3:
         _refuse_tilted_torsion(case, truss)
 

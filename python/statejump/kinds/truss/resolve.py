@@ -15,7 +15,6 @@ from statejump.kinds.truss.arrays import (
 )
 from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.beam import beam_weights_N
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
@@ -42,12 +41,12 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     links = _links(case, pairs(case.link, "nodes", node_places), positions, warmed)
     bodies = resolve_bodies(case.link, links.stress_free_length_m, links.mass_kg)
     gravity = in_space(case.truss.gravity_m_per_s2, dimension)
-    if gravity.any():
-        weights = weights_N(gravity, links.nodes, links.mass_kg, bodies, nodes.mass_kg)
-        nodes = replace(nodes, force_N=nodes.force_N + weights)
     elements = {element.section: element.resolve(element.listed(case), known) for element in ELEMENTS}
     if gravity.any():
-        nodes = replace(nodes, force_N=nodes.force_N + beam_weights_N(gravity, elements["beam"], len(positions)))
+        weights = weights_N(gravity, links.nodes, links.mass_kg, bodies, nodes.mass_kg)
+        for element in ELEMENTS:
+            weights += element.weights_N(elements[element.section], gravity, len(positions))
+        nodes = replace(nodes, force_N=nodes.force_N + weights)
 
     reflector = None
     if case.reflector is not None:

@@ -111,7 +111,7 @@ def _sentence(search: Search, wanted: float) -> Note:
     elif verdict.startswith("failed"):
         derivative = f"the derivative {verdict}"
     else:
-        derivative = f"the derivative is {verdict}: only solving again tells"
+        derivative = f"the derivative is {verdict}: only another solution shows the effect"
     return Note("smallest_change", subject=subject, value=_shown(search, search.value), wanted=asked,
                 found_by=found["found_by"], jump=plain(found["jump_with_it_m"], "m"), derivative=derivative,
                 verdict=verdict, elasticity=elasticity)

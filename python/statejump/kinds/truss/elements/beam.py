@@ -133,15 +133,6 @@ def _axes_y(items: Sequence[Beam], nodes: np.ndarray, known: References) -> np.n
     return unit(across - (across * along).sum(axis=1, keepdims=True) * along)
 
 
-def beam_weights_N(gravity_m_per_s2: np.ndarray, beams: Beams, nodes: int) -> np.ndarray:
-    """Return the weights of beams as loads on the nodes (n, 3) [N], half at each end."""
-    mass = beams.density_kg_per_m3 * beams.cross_section_area_m2 * beams.stress_free_length_m
-    found = np.zeros((nodes, 3))
-    for end in beams.nodes.T:
-        np.add.at(found, end, 0.5 * mass[:, None] * gravity_m_per_s2)
-    return found
-
-
 def eccentric(items: Sequence[Beam], dimension: int) -> tuple[str, ...]:
     """Return a sentence about beams in space whose shear centre is not their centroid."""
     names = [item.name for item in items if item.shape in ECCENTRIC] if dimension == 3 else []
@@ -249,6 +240,13 @@ class BeamType(BetweenNodes[Beam, Beams]):
                                  at_K=changes[index], fraction=elements.temperature_fraction[index],
                                  program=truss.program_names[elements.program[index]],
                                  **self.where(elements.names[index]))
+
+    def weights_N(self, elements: Beams, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
+        mass = elements.density_kg_per_m3 * elements.cross_section_area_m2 * elements.stress_free_length_m
+        found = np.zeros((nodes, 3))
+        for end in elements.nodes.T:  # half at each end
+            np.add.at(found, end, 0.5 * mass[:, None] * gravity_m_per_s2)
+        return found
 
     def preload_N(self, elements: Beams) -> np.ndarray:
         return np.zeros(len(elements.names))

@@ -80,6 +80,10 @@ class ElementType(PartType[ItemType, ArraysType]):
         """Return the largest stiffness (k,) [N/m] between the two nodes of each element."""
         return np.zeros(0)
 
+    def weights_N(self, elements: ArraysType, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
+        """Return the weights of the elements as loads on the nodes (nodes, 3) [N]."""
+        return np.zeros((nodes, 3))
+
     def preload_N(self, elements: ArraysType) -> np.ndarray:
         """Return the forces (k,) [N] in the reference configuration."""
         return np.zeros(0)
@@ -131,8 +135,7 @@ EndsType = TypeVar("EndsType", bound=EndsArrays)
 
 
 class BetweenNodes(ElementType[ItemType, EndsType]):
-    """An element type between two nodes. Items have the key ``nodes``, arrays the fields of :class:`EndsArrays`.
-    :class:`EndsArrays`."""
+    """An element type between two nodes. Items have the key ``nodes``, arrays the fields of :class:`EndsArrays`."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         known_nodes(cast(Ended, item).nodes, 2, nodes, self.where(item.name))
