@@ -173,7 +173,7 @@ NOTES: dict[str, str] = {
     "jump_leaps": "{parameter}: the jump leaps across the bound at the value found, or a truss has no path there",
     "joints_differ": (
         "{parameter}: with it joints stick, slip or touch otherwise than in the case, whose own sensitivities do not "
-        "tell what it does"
+        "apply to it"
     ),
     "increments_too_few": (
         "{parameter}: with twice the increments a branch the jump is {jump}: more reduced.increments_per_branch are "
@@ -181,7 +181,7 @@ NOTES: dict[str, str] = {
     ),
     # Identification
     "other_joint_fits_better": "{better} fits better: its BIC is {less:.1f} less",
-    "joints_alike": "the loop does not tell {best} from {other}: BIC differs by {difference:.1f}",
+    "joints_alike": "the loop does not distinguish {best} from {other}: BIC differs by {difference:.1f}",
     "not_identifiable": "{parameter} is not identifiable from this loop{why}: {bound}",
     "play_carries_no_force": "the play of a case carries no force: play_m is play (1 - play_ratio)",
     "parameter_without_key": "{parameter} has no key in {section}: the section leaves it out",
