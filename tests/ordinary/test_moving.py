@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import statejump as sj
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import MissingKey, StatejumpError
 
 import structures
 
@@ -28,3 +28,10 @@ def test_lost_contacts_make_no_energy(family: str, seed: int) -> None:
     given = np.abs(np.diff(run["thermal_work_J"])).sum() + np.abs(np.diff(run["external_work_J"])).sum()
     lost = run["damping_dissipation_J"][-1] + run["friction_dissipation_J"][-1] + run["kinetic_energy_J"].max()
     assert lost < given + run["elastic_energy_J"].max()
+
+
+def test_node_without_mass_is_refused() -> None:
+    """Only a pin holds the last node of this chain: no link ends there."""
+    with pytest.raises(MissingKey) as caught:
+        sj.load(structures.make("chain", 20004).document).reduced(dynamic=True)
+    assert caught.value.code == "mass_of_moving_node_missing" and "'N8'" in str(caught.value)

@@ -700,6 +700,10 @@ CODES: dict[str, Code] = {
     "mass_missing": Code(cause="what has weight has one of them"),
     "mass_of_body_missing": Code(cause="{of} is of a body of that mass"),
     "mass_of_moving_link_missing": Code(cause="what moves has one of them"),
+    "mass_of_moving_node_missing": Code(
+        cause="the node moves, but no link, spring or constraint gives it a mass or holds it",
+        remedy="give it a mass_kg or fix it",
+    ),
     "masses_not_lumped": Code(cause="must be 'lumped' {scheme}, as in the DEM"),
     "misspelt_reference": Code(cause="there is no {what_it_is} {name!r}", remedy="did you mean {meant!r}?"),
     "duplicate_name": Code(cause="another {part} has it"),

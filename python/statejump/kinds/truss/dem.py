@@ -26,7 +26,7 @@ from statejump.kinds.truss.check_mechanism import check_at_rest
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Torsion
-from statejump.kinds.truss.masses import lumped_mass_kg
+from statejump.kinds.truss.masses import blocked_directions, lumped_mass_kg
 from statejump.kinds.truss.motion import simulate
 from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, solve
@@ -217,11 +217,6 @@ def _refuse_far_turns(case: TrussCase, path: Course) -> None:
             raise refuse(case, "dem_large_rotation", f"{joint.section} {joints.names[index]!r} rotates by "
                                f"{turned[index]:.3g} rad, the DEM cannot distinguish more than π/2 from its opposite",
                                joint=joints.names[index])
-
-
-def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
-    """Return for each node and axis (n, 3) whether supports, or a guide normal to the axis, prevent motion along it."""
-    return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
 
 
 def _programs(truss: ResolvedTruss) -> list[dict[str, Any]]:

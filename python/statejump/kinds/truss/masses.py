@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from statejump.core.errors import MissingKey
+from statejump.kinds.truss.arrays import SAME_DIRECTION
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 
@@ -22,3 +23,21 @@ def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
         mass[ends] += share
     mass[held] = 0
     return mass
+
+
+def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
+    """Return for each node and axis (n, 3) whether supports, or a guide normal to the axis, prevent motion along it."""
+    return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
+
+
+def require_masses(truss: ResolvedTruss) -> None:
+    """Check that every node that moves has a mass, a link, a spring or a constraint.
+
+    :raises MissingKey: a node has none of them, so nothing determines its acceleration
+    """
+    has = truss.nodes.mass_kg > 0
+    for nodes in (truss.links.nodes, truss.springs.nodes, *truss.constraints.nodes):
+        has[nodes[nodes >= 0]] = True
+    for index in np.flatnonzero(~has & ~blocked_directions(truss)[:, :truss.dimension].all(axis=1))[:1]:
+        raise MissingKey("mass_kg", code="mass_of_moving_node_missing", section=f"mass_kg of node "
+                         f"{truss.nodes.names[index]!r}", case=truss.name)

@@ -18,7 +18,7 @@ from statejump.core.progress import OnProgress
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import refuse_beams
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.masses import lumped_mass_kg
+from statejump.kinds.truss.masses import lumped_mass_kg, require_masses
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvents, engine_items
 
@@ -103,6 +103,7 @@ def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarr
 def inertia(case: TrussCase) -> dict[str, Any]:
     """Return masses and dashpots of a case for the engine."""
     truss, links, springs = case.resolve(), case.resolve().links, case.resolve().springs
+    require_masses(truss)
     lumped = lumped_mass_kg(truss)
     axial = physics.axial_stiffness_N_per_m(
         links.young_modulus_Pa, links.cross_section_area_m2, links.stress_free_length_m)
