@@ -413,6 +413,17 @@ def truss_motion(
     progress: Callable[[float], bool | None] | None = ...,
 ) -> _Fields: ...
 
+def truss_linearised(
+    nodes: _Items,
+    elements: Mapping[str, _Items],
+    joints: Mapping[str, _Items],
+    programs: Sequence[ThermalProgram],
+    inertia: _Items,
+    *,
+    start_friction: str = ...,
+    constraints: _Items = ...,
+) -> dict[str, Any]: ...
+
 class BoreMesh(metaclass=_pybind11_type):
     def __init__(
         self,

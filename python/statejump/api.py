@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from statejump.core.case import Case
-from statejump.control.capabilities import JointStatics, RestSets
+from statejump.control.capabilities import JointStatics, RestSets, VibrationModes
 from statejump.core.comparison import FIRST, SECOND, Comparison, of_two
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
@@ -44,6 +44,16 @@ def compare(first: Run, second: Run) -> Comparison:
         return require(case, ModelComparison).compare(case, by_model["reduced"], by_model["dem"])
     rows = require(case, RunDifference).difference(case, first, second.at(first.time_s))
     return Comparison(case, {FIRST: first, SECOND: second}, tuple(of_two(rows)))
+
+
+def modes(case: Case, count: int = 6) -> Any:
+    """Return the natural frequencies and mode shapes of a truss, every joint held.
+
+    :param count: number of modes, from the lowest
+    :return: :class:`statejump.kinds.truss.modes.Modes`
+    :raises StatejumpError: this kind of case has no modes, or nothing of the case has a mass
+    """
+    return require(case, VibrationModes).modes(case, count)
 
 
 def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:

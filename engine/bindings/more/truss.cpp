@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../bindings.hpp"
+#include "statejump/truss/modes.hpp"
 #include "statejump/truss/motion.hpp"
 #include "statejump/truss/path.hpp"
 
@@ -587,6 +588,21 @@ py::dict path_of(const py::dict& nodes, const py::dict& elements, const py::dict
   return path_dict(model, path);
 }
 
+truss::Inertia inertia_of(const py::dict& from) {
+  const auto numbers = [&](const char* key) { return from[key].cast<Eigen::VectorXd>(); };
+  truss::Inertia made{numbers("link_mass_kg"),
+                      numbers("node_mass_kg"),
+                      numbers("link_damping_N_s_per_m"),
+                      numbers("pin_damping_N_m_s_per_rad"),
+                      numbers("spring_damping_N_s_per_m"),
+                      numbers("joint_damping_sqrt_kg"),
+                      from["link_centre"].cast<Eigen::MatrixX2d>().transpose(),
+                      numbers("link_moment_kg_m2")};
+  made.beam_mass = numbers("beam_mass_kg");
+  made.beam_moment = from["beam_moment_kg_m2"].cast<Eigen::MatrixX3d>().transpose();
+  return made;
+}
+
 /// Documentation of truss_motion().
 constexpr const char* about_motion =
     "Motion of a truss from the equilibrium in which its quasi-static path begins, or from the\n"
@@ -594,7 +610,8 @@ constexpr const char* about_motion =
     "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
     "pin_damping_N_m_s_per_rad (a number for each link), node_mass_kg,\n"
     "spring_damping_N_s_per_m, joint_damping_sqrt_kg (2 ζ √m of each joint, kind by kind as of\n"
-    "truss_joints()), link_centre (m, 2) shares along and to the left, link_moment_kg_m2.\n"
+    "truss_joints()), link_centre (m, 2) shares along and to the left, link_moment_kg_m2,\n"
+    "beam_mass_kg, beam_moment_kg_m2 (m, 3) of half a beam about x, y, z of its section.\n"
     "steps: of the whole program. displacement_tolerance_m: of a step, which is then as long as\n"
     "that allows; 0: equal steps. drives: dicts with name, link, time_s,\n"
     "angular_velocity_rad_per_s; their moments and work are among the states. friction_law: the\n"
@@ -612,15 +629,7 @@ py::dict motion_of(const py::dict& nodes, const py::dict& elements, const py::di
                    const std::string& start_friction, const std::string& friction_law,
                    const py::object& progress, const py::dict& constraints) {
   const truss::Model model = make_model(nodes, elements, joints, constraints, std::move(programs));
-  const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
-  const truss::Inertia masses{numbers("link_mass_kg"),
-                              numbers("node_mass_kg"),
-                              numbers("link_damping_N_s_per_m"),
-                              numbers("pin_damping_N_m_s_per_rad"),
-                              numbers("spring_damping_N_s_per_m"),
-                              numbers("joint_damping_sqrt_kg"),
-                              inertia["link_centre"].cast<Eigen::MatrixX2d>().transpose(),
-                              numbers("link_moment_kg_m2")};
+  const truss::Inertia masses = inertia_of(inertia);
   truss::MotionOptions options;
   for (const py::handle& one : drives) {
     options.drives.push_back({one["name"].cast<std::string>(), one["link"].cast<int>(),
@@ -648,6 +657,24 @@ py::dict motion_of(const py::dict& nodes, const py::dict& elements, const py::di
                  : truss::simulate_regularised(model, masses, friction_law, options);
   }
   return motion_dict(model, motion);
+}
+
+py::dict linearised(const py::dict& nodes, const py::dict& elements, const py::dict& joints,
+                    std::vector<thermal::Program> programs, const py::dict& inertia,
+                    const std::string& start_friction, const py::dict& constraints) {
+  const truss::Model model = make_model(nodes, elements, joints, constraints, std::move(programs));
+  const truss::Inertia masses = inertia_of(inertia);
+  truss::Linearised found;
+  {
+    py::gil_scoped_release unlocked;
+    found = truss::linearise(model, masses, start_friction_of(start_friction));
+  }
+  py::dict made;
+  made["stiffness_N_per_m"] = std::move(found.stiffness);
+  made["mass_kg"] = std::move(found.mass);
+  made["constraints"] = std::move(found.constraints);
+  made["of_nodes"] = std::move(found.of_nodes);
+  return made;
 }
 
 void bind_types(py::module_& module) {
@@ -711,6 +738,13 @@ void bind_motion(py::module_& module) {
              py::arg("start_drawn") = false, py::arg("start_friction") = "stuck",
              py::arg("friction_law") = "", py::arg("progress") = py::none(),
              py::arg("constraints") = py::dict(), about_motion);
+  module.def("truss_linearised", linearised, py::arg("nodes"), py::arg("elements"),
+             py::arg("joints"), py::arg("programs"), py::arg("inertia"), py::kw_only(),
+             py::arg("start_friction") = "stuck", py::arg("constraints") = py::dict(),
+             "Matrices of small vibrations about the first equilibrium, every joint held.\n\n"
+             "Items as of truss_motion(). Returns sparse matrices of scipy: stiffness_N_per_m and "
+             "mass_kg of the\ndofs q; constraints, whose product with q is zero; of_nodes: "
+             "displacements [m] of all nodes, then\nrotation vectors [rad], as functions of q.");
 }
 
 }  // namespace

@@ -53,6 +53,13 @@ class DesignAnswers(Protocol):
     def answers(self, case: Any, **settings: Any) -> Any: ...
 
 
+@capability("modes")
+class VibrationModes(Protocol):
+    """Natural frequencies and mode shapes; see :class:`statejump.kinds.truss.modes.Modes`."""
+
+    def modes(self, case: Any, count: int = 6) -> Any: ...
+
+
 @capability("truss creak")
 class Creaking(Protocol):
     """Slips of the joints of a truss in motion, and the acceleration of a node; see :func:`statejump.truss.creak`."""

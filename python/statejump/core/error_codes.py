@@ -611,6 +611,9 @@ CODES: dict[str, Code] = {
         cause="{model} has no rotations of nodes",
         remedy="run its quasi-static path: 'statejump reduced'",
     ),
+    "no_moving_mass": Code(
+        what="nothing that moves has a mass", remedy="give links, beams or nodes a density or a mass",
+    ),
     "no_free_dof": Code(
         what="every node is held in all directions",
         cause="nothing moves",
@@ -700,6 +703,7 @@ CODES: dict[str, Code] = {
     "mass_missing": Code(cause="what has weight has one of them"),
     "mass_of_body_missing": Code(cause="{of} is of a body of that mass"),
     "mass_of_moving_link_missing": Code(cause="what moves has one of them"),
+    "mass_of_moving_beam_missing": Code(cause="what moves has one"),
     "mass_of_moving_node_missing": Code(
         cause="the node moves, but no link, spring or constraint gives it a mass or holds it",
         remedy="give it a mass_kg or fix it",

@@ -40,6 +40,13 @@ Bodies::Bodies(const System& system, const Inertia& inertia)
   }
   check(inertia.link_damping, model.links.size(), "link damping", "N s/m");
   check(inertia.pin_damping, model.links.size(), "pin damping", "N m s/rad");
+  check(inertia.beam_mass, model.beams.size(), "beam mass", "kg");
+  if (inertia.beam_moment.size() != 0) {
+    kernel::require(inertia.beam_moment.allFinite() && inertia.beam_moment.minCoeff() >= 0.0 &&
+                        static_cast<std::size_t>(inertia.beam_moment.cols()) == model.beams.size(),
+                    "count of moments of inertia of beams",
+                    static_cast<double>(inertia.beam_moment.cols()), "one of each beam, >= 0");
+  }
   check(inertia.spring_damping, model.springs.size(), "spring damping", "N s/m");
   check(inertia.joint_damping, model.joints.size(), "joint damping", "kg^1/2");
   std::vector<Eigen::Triplet<double>> entries;

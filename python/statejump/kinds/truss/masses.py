@@ -25,6 +25,24 @@ def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
     return mass
 
 
+def beam_mass_kg(truss: ResolvedTruss) -> np.ndarray:
+    """Return the mass of every beam [kg]. :raises MissingKey: a beam has no density"""
+    beams = truss.elements["beam"]
+    for name, density in zip(beams.names, beams.density_kg_per_m3):
+        if np.isnan(density):
+            raise MissingKey("density_kg_per_m3", code="mass_of_moving_beam_missing", item=f"beam {name!r}",
+                             case=truss.name)
+    return np.asarray(beams.density_kg_per_m3 * beams.cross_section_area_m2 * beams.stress_free_length_m)
+
+
+def beam_moment_kg_m2(truss: ResolvedTruss) -> np.ndarray:
+    """Return the moments of inertia (k, 3) of the sections of half of each beam about x, y and z [kg m²]."""
+    beams = truss.elements["beam"]
+    moments = beams.second_moments_of_area_m4
+    half = 0.5 * beams.density_kg_per_m3 * beams.stress_free_length_m
+    return np.asarray(half[:, None] * np.column_stack((moments.sum(axis=1), moments)))
+
+
 def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
     """Return for each node and axis (n, 3) whether supports, or a guide normal to the axis, prevent motion along it."""
     return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
@@ -36,7 +54,7 @@ def require_masses(truss: ResolvedTruss) -> None:
     :raises MissingKey: a node has none of them, so nothing determines its acceleration
     """
     has = truss.nodes.mass_kg > 0
-    for nodes in (truss.links.nodes, truss.springs.nodes, *truss.constraints.nodes):
+    for nodes in (truss.links.nodes, truss.springs.nodes, truss.elements["beam"].nodes, *truss.constraints.nodes):
         has[nodes[nodes >= 0]] = True
     for index in np.flatnonzero(~has & ~blocked_directions(truss)[:, :truss.dimension].all(axis=1))[:1]:
         raise MissingKey("mass_kg", code="mass_of_moving_node_missing", section=f"mass_kg of node "

@@ -18,7 +18,7 @@ from statejump.core.progress import OnProgress
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import refuse_beams
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.masses import lumped_mass_kg, require_masses
+from statejump.kinds.truss.masses import beam_mass_kg, beam_moment_kg_m2, lumped_mass_kg, require_masses
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvents, engine_items
 
@@ -115,6 +115,8 @@ def inertia(case: TrussCase) -> dict[str, Any]:
         "link_moment_kg_m2": np.zeros(len(links.names)) if is_lumped else truss.bodies.moment_kg_m2,
         "link_damping_N_s_per_m": dashpots_N_s_per_m(links.nodes, axial, ratio, lumped),
         "pin_damping_N_m_s_per_rad": np.full(len(links.names), case.dem_settings.pin_damping_N_m_s_per_rad),
+        "beam_mass_kg": beam_mass_kg(truss),
+        "beam_moment_kg_m2": beam_moment_kg_m2(truss),
         "joint_damping_sqrt_kg": joint_dashpots_sqrt_kg(truss, case.dem_settings.contact_damping_ratio, lumped),
         "spring_damping_N_s_per_m": dashpots_N_s_per_m(springs.nodes, springs.stiffness_N_per_m, ratio, lumped),
     }
