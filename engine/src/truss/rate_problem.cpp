@@ -84,6 +84,244 @@ bool has_positive_symmetric_part(Eigen::MatrixXd matrix) {
   return factors.info() == Eigen::Success && (factors.vectorD().array() > rounding).all();
 }
 
+/// Step for which the statuses at its start are sought.
+struct Sought {
+  const System& system;
+  const VectorXd& z;
+  double target;
+  const StepStart& start;
+  const Statuses& found;  ///< See RateProblem::solve().
+};
+
+/// The search of RateProblem::solve(). Each round enumerates the statuses of the candidates. If a
+/// solution requests a status that is not among them, the next round includes it.
+class RateSearch {
+ public:
+  RateSearch(const Sought& of, Assembly& at, linear::SparseFactor& factor)
+      : of_(of), at_(at), factor_(factor) {}
+
+  RateAnswer solve(const std::vector<int>& changing) {
+    if (!add_found()) return answer_;
+    for (const int joint : changing) candidate(joint);
+    // The loop ends, because every round adds at least one status to one of the joints.
+    while (!is_too_large() && round()) continue;
+    return answer_;
+  }
+
+ private:
+  /// Solutions of a round.
+  struct Round {
+    const Branches& branches;
+    const Asking asking;
+    std::vector<Group> groups;
+    std::vector<Found> found;  ///< For each group.
+  };
+
+  bool solved() const { return !of_.found.empty(); }
+  std::size_t candidate(int joint);
+  /// Adds a status to a candidate; returns whether it is new. The base (first status) must be
+  /// closed: an open joint has no normal.
+  bool add(std::size_t candidate, JointStatus status);
+  /// Adds joints that slip or change their status. False: there are too many.
+  bool add_found();
+  bool is_too_large() const;
+  /// Returns whether another round follows; otherwise answer_ is complete.
+  bool round();
+  bool add_requested(const Round& now);
+  bool add_slips(const Round& now);
+  bool add_others(const Round& now);
+  void conclude(const Round& now);
+  /// Combines a motion of one group with the first motion of every other group, to check the joints
+  /// that are not candidates.
+  static Motion together(const Round& now, std::size_t special, const Motion& with);
+  /// The continuation of a group whose solutions are one; null otherwise.
+  const Motion* only(const Found& of) const;
+
+  Sought of_;
+  Assembly& at_;
+  linear::SparseFactor& factor_;
+  std::vector<Candidate> candidates_;
+  RateAnswer answer_;
+};
+
+std::size_t RateSearch::candidate(int joint) {
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (candidates_[i].joint == joint) return i;
+  }
+  const int rows = of_.system.force_count(joint);
+  candidates_.push_back(
+      {joint, {of_.start.statuses[index(joint)]}, of_.system.force_row(joint), rows, 0});
+  return candidates_.size() - 1;
+}
+
+bool RateSearch::add(std::size_t candidate, JointStatus status) {
+  Candidate& to = candidates_[candidate];
+  if (to.has(status)) return false;
+  to.branches.push_back(status);
+  if (to.branches.front() == JointStatus::open) std::swap(to.branches.front(), to.branches.back());
+  return true;
+}
+
+bool RateSearch::add_found() {
+  for (int i = 0; i < static_cast<int>(of_.start.statuses.size()); ++i) {
+    const JointStatus before = of_.start.statuses[index(i)];
+    const bool slips = is_slip(before) && of_.system.remembers_when(i, before, JointStatus::stick);
+    if (slips) add(candidate(i), JointStatus::stick);
+    if (solved() && of_.found[index(i)] != before) add(candidate(i), of_.found[index(i)]);
+    if (solved() && candidates_.size() > most_joints) return false;
+  }
+  return true;
+}
+
+bool RateSearch::is_too_large() const {
+  std::size_t numbers = 0;
+  for (const Candidate& one : candidates_) numbers += index(one.rows);
+  numbers *= index(of_.system.unknowns());
+  return (solved() && candidates_.size() > most_joints) || numbers > most_numbers;
+}
+
+bool RateSearch::round() {
+  answer_.joints.clear();
+  for (const Candidate& one : candidates_) {
+    answer_.joints.push_back(one.joint);
+    answer_.opens = answer_.opens || one.has(JointStatus::open);
+  }
+  const auto branches =
+      prepare(of_.system, of_.z, of_.target, of_.start, candidates_, at_, factor_);
+  if (!branches) return false;
+  const auto matrix = complementarity_matrix(*branches);
+  const bool is_unique = matrix && has_positive_symmetric_part(*matrix);
+  if (is_unique && solved()) {
+    answer_.count = Continuation::one;
+    answer_.statuses = of_.found;
+    return false;
+  }
+  Round now{*branches,
+            {of_.system, of_.z, of_.target, of_.start, *branches,
+             farthest(of_.system, of_.z, branches->step)},
+            groups_of(*branches),
+            {}};
+  if (branches->index < 0) {
+    // It is unknown which group makes the base unstable.
+    Group all(candidates_.size());
+    std::iota(all.begin(), all.end(), 0);
+    now.groups = {all};
+  }
+  for (const Group& group : now.groups) {
+    now.found.push_back(motions_of(*branches, group, now.asking));
+    const std::optional<Choice>& singular = now.found.back().singular;
+    if (singular) answer_.singular = now.asking.statuses(*singular);
+  }
+  if (add_requested(now) || add_slips(now) || add_others(now)) return true;
+  conclude(now);
+  return false;
+}
+
+bool RateSearch::add_requested(const Round& now) {
+  bool widened = false;
+  for (const Found& group : now.found) {
+    for (const auto& [i, wanted] : group.requested) widened = add(i, wanted) || widened;
+  }
+  return widened;
+}
+
+/// If a contact would be in tension while it sticks, and would penetrate while it is open, it may
+/// slip.
+bool RateSearch::add_slips(const Round& now) {
+  bool widened = false;
+  for (std::size_t g = 0; g < now.groups.size() && !widened; ++g) {
+    if (!now.found[g].motions.empty()) continue;
+    for (const std::size_t i : now.groups[g]) {
+      if (!candidates_[i].has(JointStatus::open)) continue;
+      for (const JointStatus slip : {JointStatus::slip_plus, JointStatus::slip_minus}) {
+        widened = add(i, slip) || widened;
+      }
+    }
+  }
+  return widened;
+}
+
+Motion RateSearch::together(const Round& now, std::size_t special, const Motion& with) {
+  Motion whole{Choice(now.branches.candidates.size(), 0), with.step, with.index};
+  for (std::size_t g = 0; g < now.groups.size(); ++g) {
+    const Motion& part = g == special ? with : now.found[g].motions.front();
+    for (const std::size_t i : now.groups[g]) whole.choice[i] = part.choice[i];
+    if (g != special) whole.step += part.step - now.branches.step;
+  }
+  return whole;
+}
+
+/// Adds joints that are not candidates, but request another status.
+bool RateSearch::add_others(const Round& now) {
+  const bool each = std::all_of(now.found.begin(), now.found.end(),
+                                [](const Found& one) { return !one.motions.empty(); });
+  bool widened = false;
+  for (std::size_t g = 0; g < now.groups.size() && each; ++g) {
+    for (const Motion& motion : now.found[g].motions) {
+      const Motion whole = together(now, g, motion);
+      const Statuses statuses = now.asking.statuses(whole.choice);
+      for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+        const JointStatus wanted = now.asking.wanted(i, whole, statuses[index(i)]);
+        if (wanted != statuses[index(i)]) widened = add(candidate(i), wanted) || widened;
+      }
+    }
+  }
+  return widened;
+}
+
+const Motion* RateSearch::only(const Found& of) const {
+  const auto& motions = of.motions;
+  const auto count = std::count_if(motions.begin(), motions.end(),
+                                   [](const Motion& one) { return one.index >= 0; });
+  // The indices of all solutions sum to one (degree of the equations). Without unstable solutions
+  // and mechanisms, several stable solutions are therefore equal up to rounding.
+  const bool is_one = count == 1 || (count > 1 && count == std::ssize(motions) && !of.singular);
+  if (!is_one) return nullptr;
+  const auto far = [&](const Motion& to) {
+    return to.index < 0 ? std::numeric_limits<double>::infinity()
+                        : length_of(to.step, of_.system.displacements());
+  };
+  return &*std::min_element(
+      motions.begin(), motions.end(),
+      [&](const Motion& one, const Motion& other) { return far(one) < far(other); });
+}
+
+/// Groups without a continuation (`stopped`) or with several (`parting`) determine the result.
+/// Their joints are reported.
+void RateSearch::conclude(const Round& now) {
+  std::vector<int> stopped, parting;
+  bool parts_only = true;
+  bool examined = true;
+  std::vector<const Motion*> stable;
+  for (std::size_t g = 0; g < now.groups.size(); ++g) {
+    const auto& motions = now.found[g].motions;
+    const bool none = std::none_of(motions.begin(), motions.end(),
+                                   [](const Motion& one) { return one.index >= 0; });
+    if (none && !now.found[g].examined) examined = false;
+    if (const Motion* const one = only(now.found[g])) {
+      stable.push_back(one);
+      continue;
+    }
+    std::vector<int>& named = none ? stopped : parting;
+    parts_only = parts_only && !none;
+    for (const std::size_t i : now.groups[g]) named.push_back(candidates_[i].joint);
+  }
+  if (!examined) return;
+  if (stable.size() < now.groups.size()) {
+    answer_.count = parts_only ? Continuation::several : Continuation::none;
+    answer_.joints = parts_only ? parting : stopped;
+    return;
+  }
+  answer_.count = Continuation::one;
+  Choice choice(candidates_.size(), 0);
+  answer_.step = now.branches.step;
+  for (std::size_t g = 0; g < now.groups.size(); ++g) {
+    for (const std::size_t i : now.groups[g]) choice[i] = stable[g]->choice[i];
+    answer_.step += stable[g]->step - now.branches.step;
+  }
+  answer_.statuses = now.asking.statuses(choice);
+}
+
 }  // namespace
 
 int index_of(int determinant_sign, const Assembly& at) {
@@ -108,157 +346,7 @@ const Assembly& RateProblem::equations(const VectorXd& z, double time, const Ste
 RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart& start,
                               const Statuses& found, const std::vector<int>& changing) {
   begin();
-  RateAnswer answer;
-  std::vector<Candidate> candidates;
-  const auto candidate = [&](int joint) -> Candidate& {
-    for (Candidate& one : candidates) {
-      if (one.joint == joint) return one;
-    }
-    const int rows = system_->force_count(joint);
-    candidates.push_back(
-        {joint, {start.statuses[index(joint)]}, system_->force_row(joint), rows, 0});
-    return candidates.back();
-  };
-  // Adds a status to a candidate; returns whether it is new. The base (first status) must be
-  // closed: an open joint has no normal.
-  const auto add = [](Candidate& to, JointStatus status) {
-    if (to.has(status)) return false;
-    to.branches.push_back(status);
-    if (to.branches.front() == JointStatus::open) {
-      std::swap(to.branches.front(), to.branches.back());
-    }
-    return true;
-  };
-  for (int i = 0; i < static_cast<int>(start.statuses.size()); ++i) {
-    const JointStatus before = start.statuses[index(i)];
-    const bool slips = is_slip(before) && system_->remembers_when(i, before, JointStatus::stick);
-    if (slips) add(candidate(i), JointStatus::stick);
-    if (!found.empty() && found[index(i)] != before) add(candidate(i), found[index(i)]);
-    if (!found.empty() && candidates.size() > most_joints) return answer;
-  }
-  for (const int joint : changing) candidate(joint);
-  // The loop ends, because every round adds at least one status to one of the joints.
-  for (;;) {
-    std::size_t numbers = 0;
-    for (const Candidate& one : candidates) numbers += index(one.rows);
-    numbers *= index(system_->unknowns());
-    if ((!found.empty() && candidates.size() > most_joints) || numbers > most_numbers)
-      return answer;
-    answer.joints.clear();
-    for (const Candidate& one : candidates) {
-      answer.joints.push_back(one.joint);
-      answer.opens = answer.opens || one.has(JointStatus::open);
-    }
-    const auto of = prepare(*system_, z, target, start, candidates, at_, factor_);
-    if (!of) return answer;
-    const auto matrix = complementarity_matrix(*of);
-    const bool is_unique = matrix && has_positive_symmetric_part(*matrix);
-    if (is_unique && !found.empty()) {
-      answer.count = Continuation::one;
-      answer.statuses = found;
-      return answer;
-    }
-    const Asking asking(*system_, z, target, start, *of, farthest(*system_, z, of->step));
-    std::vector<Group> groups = groups_of(*of);
-    if (of->index < 0) {
-      // It is unknown which group makes the base unstable.
-      Group all(candidates.size());
-      std::iota(all.begin(), all.end(), 0);
-      groups = {all};
-    }
-    std::vector<Found> all;
-    bool widened = false;
-    for (const Group& group : groups) {
-      all.push_back(motions_of(*of, group, asking));
-      for (const auto& [i, wanted] : all.back().requested) {
-        widened = add(candidates[i], wanted) || widened;
-      }
-      if (all.back().singular) answer.singular = asking.statuses(*all.back().singular);
-    }
-    // If a contact would be in tension while it sticks, and would penetrate while it is open, it
-    // may slip.
-    for (std::size_t g = 0; g < groups.size() && !widened; ++g) {
-      if (!all[g].motions.empty()) continue;
-      for (const std::size_t i : groups[g]) {
-        if (!candidates[i].has(JointStatus::open)) continue;
-        for (const JointStatus slip : {JointStatus::slip_plus, JointStatus::slip_minus}) {
-          widened = add(candidates[i], slip) || widened;
-        }
-      }
-    }
-    if (widened) continue;
-
-    // Combines a motion of one group with the first motion of every other group, to check the
-    // joints that are not candidates.
-    const auto together = [&](std::size_t special, const Motion& with) {
-      Motion whole{Choice(of->candidates.size(), 0), with.step, with.index};
-      for (std::size_t g = 0; g < groups.size(); ++g) {
-        const Motion& part = g == special ? with : all[g].motions.front();
-        for (const std::size_t i : groups[g]) whole.choice[i] = part.choice[i];
-        if (g != special) whole.step += part.step - of->step;
-      }
-      return whole;
-    };
-    const bool each =
-        std::all_of(all.begin(), all.end(), [](const Found& one) { return !one.motions.empty(); });
-    for (std::size_t g = 0; g < groups.size() && each; ++g) {
-      for (const Motion& motion : all[g].motions) {
-        const Motion whole = together(g, motion);
-        const Statuses statuses = asking.statuses(whole.choice);
-        for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
-          const JointStatus wanted = asking.wanted(i, whole, statuses[index(i)]);
-          if (wanted != statuses[index(i)]) widened = add(candidate(i), wanted) || widened;
-        }
-      }
-    }
-    if (widened) continue;
-
-    // Groups without a continuation (`stopped`) or with several (`parting`) determine the result.
-    // Their joints are reported.
-    std::vector<int> stopped, parting;
-    bool parts_only = true;
-    bool examined = true;
-    std::vector<Motion> stable;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      const auto& motions = all[g].motions;
-      const auto count = std::count_if(motions.begin(), motions.end(),
-                                       [](const Motion& one) { return one.index >= 0; });
-      if (count == 0 && !all[g].examined) examined = false;
-      // The indices of all solutions sum to one (degree of the equations). Without unstable
-      // solutions and mechanisms, several stable solutions are therefore equal up to rounding.
-      const bool is_one =
-          count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular);
-      if (is_one) {
-        stable.push_back(*std::min_element(
-            motions.begin(), motions.end(), [&](const Motion& one, const Motion& other) {
-              const auto far = [&](const Motion& to) {
-                return to.index < 0 ? std::numeric_limits<double>::infinity()
-                                    : length_of(to.step, system_->displacements());
-              };
-              return far(one) < far(other);
-            }));
-        continue;
-      }
-      std::vector<int>& named = count == 0 ? stopped : parting;
-      parts_only = parts_only && count > 0;
-      for (const std::size_t i : groups[g]) named.push_back(candidates[i].joint);
-    }
-    if (!examined) return answer;
-    if (stable.size() < groups.size()) {
-      answer.count = parts_only ? Continuation::several : Continuation::none;
-      answer.joints = parts_only ? parting : stopped;
-      return answer;
-    }
-    answer.count = Continuation::one;
-    Choice choice(candidates.size(), 0);
-    answer.step = of->step;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (const std::size_t i : groups[g]) choice[i] = stable[g].choice[i];
-      answer.step += stable[g].step - of->step;
-    }
-    answer.statuses = asking.statuses(choice);
-    return answer;
-  }
+  return RateSearch({*system_, z, target, start, found}, at_, factor_).solve(changing);
 }
 
 }  // namespace statejump::truss::detail

@@ -13,8 +13,8 @@ namespace statejump::truss {
 /// journals and balls rest in their bearings without clearance. K is the stiffness of the elements
 /// under their forces.
 struct Linearised {
-  Eigen::SparseMatrix<double> stiffness;  ///< K, symmetric [N/m].
-  Eigen::SparseMatrix<double> mass;       ///< M, symmetric [kg].
+  Eigen::SparseMatrix<double> stiffness;    ///< K, symmetric [N/m].
+  Eigen::SparseMatrix<double> mass;         ///< M, symmetric [kg].
   Eigen::SparseMatrix<double> constraints;  ///< C; rows may be zero or depend on others.
   /// Displacements [m] of all nodes (3 rows each), then their rotation vectors [rad] if the truss
   /// has rotations, as linear functions of q.

@@ -30,17 +30,6 @@ Eigen::SparseMatrix<double> of_nodes(const Model& model, const detail::DofMap& d
   return made;
 }
 
-/// Displacements of all sites in a state [m].
-Eigen::Matrix3Xd sites_of(const Model& model, const State& state) {
-  if (state.rotation.cols() == 0) return state.displacement;
-  Eigen::Matrix3Xd sites(3, state.displacement.cols() + state.rotation.cols());
-  sites << state.displacement, state.rotation;
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-    sites.col(static_cast<Eigen::Index>(model.nodes.size() + i)) *= model.nodes[i].arm;
-  }
-  return sites;
-}
-
 }  // namespace
 
 Linearised linearise(const Model& model, const Inertia& inertia, StartFriction start_friction) {
@@ -51,7 +40,7 @@ Linearised linearise(const Model& model, const Inertia& inertia, StartFriction s
   const detail::System system(model);
   const detail::Bodies bodies(system, inertia);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(system.unknowns());
-  z.head(system.displacements()) = system.dofs().dofs_at(sites_of(model, start));
+  z.head(system.displacements()) = system.dofs().dofs_at(detail::sites_of(model, start));
   const detail::Statuses held = system.all_stick();
   const detail::StepStart begun = system.begin(z, start.time, held, 1.0);
   Assembly at = system.assembly();

@@ -31,6 +31,8 @@ constexpr double orthogonal = 1e-12;
 
 void check(const Model& model, const MotionOptions& options) {
   detail::check_motion(model, options);
+  kernel::require(model.beams.empty(), "count of beams in explicit steps",
+                  static_cast<double>(model.beams.size()), "0");
   kernel::require(options.displacement_tolerance == 0.0, "displacement_tolerance",
                   options.displacement_tolerance, "0 m with the scheme 'regularised'");
   kernel::require(options.restitution == 0.0, "restitution", options.restitution,

@@ -142,13 +142,16 @@ bool Run::begin() {
     }
   };
   if (options_.start) {
-    at(bodies_.free_part(options_.start->displacement), bodies_.free_part(options_.start->velocity),
-       nullptr);
+    const auto free = [&](const Eigen::Matrix3Xd& of_nodes) {
+      return bodies_.free_part(detail::sites_of(system_, of_nodes));
+    };
+    at(free(options_.start->displacement), free(options_.start->velocity), nullptr);
     return true;
   }
   const std::optional<State> start = detail::equilibrium(model_, options_);
   if (!start) return false;
-  at(bodies_.free_part(start->displacement), VectorXd::Zero(system_.displacements()), &*start);
+  at(bodies_.free_part(detail::sites_of(model_, *start)), VectorXd::Zero(system_.displacements()),
+     &*start);
   return true;
 }
 
@@ -157,9 +160,11 @@ void Run::sample(Stepper& stepper) {
   State state;
   stepper.describe(state);
   motion_.states.push_back(std::move(state));
-  motion_.moving.push_back({bodies_.of_nodes(stepper.velocity()), stepper.kinetic_energy(),
-                            stepper.account().damping, stepper.account().impact,
-                            stepper.account().drives, stepper_.drive_moment()});
+  motion_.moving.push_back({bodies_.of_nodes(stepper.velocity())
+                                .leftCols(static_cast<Eigen::Index>(model_.nodes.size())),
+                            stepper.kinetic_energy(), stepper.account().damping,
+                            stepper.account().impact, stepper.account().drives,
+                            stepper_.drive_moment()});
 }
 
 void Run::watch(long step) {

@@ -10,8 +10,6 @@ namespace statejump::truss::detail {
 
 void check_motion(const Model& model, const MotionOptions& options) {
   model.validate();
-  kernel::require(model.beams.empty(), "count of beams in motion",
-                  static_cast<double>(model.beams.size()), "0: beams have quasi-static paths only");
   kernel::require(options.steps >= 1, "steps", static_cast<double>(options.steps), ">= 1");
   kernel::require(options.sample_every >= 1, "sample_every",
                   static_cast<double>(options.sample_every), ">= 1");
@@ -37,6 +35,23 @@ std::optional<State> equilibrium(const Model& model, const MotionOptions& option
   Path path = solve(model, statics);
   if (ended) return {};
   return std::move(path.states.front());
+}
+
+Eigen::Matrix3Xd sites_of(const Model& model, const State& state) {
+  if (state.rotation.cols() == 0) return state.displacement;
+  Eigen::Matrix3Xd sites(3, state.displacement.cols() + state.rotation.cols());
+  sites << state.displacement, state.rotation;
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    sites.col(static_cast<Eigen::Index>(model.nodes.size() + i)) *= model.nodes[i].arm;
+  }
+  return sites;
+}
+
+Eigen::Matrix3Xd sites_of(const System& system, const Eigen::Matrix3Xd& of_nodes) {
+  Eigen::Matrix3Xd sites =
+      Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(system.dofs().sites()));
+  sites.leftCols(of_nodes.cols()) = of_nodes;
+  return sites;
 }
 
 }  // namespace statejump::truss::detail

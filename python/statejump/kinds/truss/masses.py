@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masses of nodes. Half of a link's mass is lumped at each end. If one end is fixed, the other end gets a third of the
+"""Masses of nodes. Half of the mass of a link or beam is lumped at each end. If one end of a link is fixed, the other end gets a third of the
 mass, which is exact for a uniform rod on a pin."""
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
     for ends, link in zip(truss.links.nodes, truss.links.mass_kg):
         share = link / 3 if held[ends].any() else link / 2
         mass[ends] += share
+    beams = truss.elements["beam"].nodes
+    np.add.at(mass, beams, 0.5 * beam_mass_kg(truss)[:, None])
     mass[held] = 0
     return mass
 

@@ -115,7 +115,7 @@ def inertia(case: TrussCase) -> dict[str, Any]:
         "link_moment_kg_m2": np.zeros(len(links.names)) if is_lumped else truss.bodies.moment_kg_m2,
         "link_damping_N_s_per_m": dashpots_N_s_per_m(links.nodes, axial, ratio, lumped),
         "pin_damping_N_m_s_per_rad": np.full(len(links.names), case.dem_settings.pin_damping_N_m_s_per_rad),
-        "beam_mass_kg": beam_mass_kg(truss),
+        "beam_mass_kg": np.zeros(len(truss.elements["beam"].names)) if is_lumped else beam_mass_kg(truss),
         "beam_moment_kg_m2": beam_moment_kg_m2(truss),
         "joint_damping_sqrt_kg": joint_dashpots_sqrt_kg(truss, case.dem_settings.contact_damping_ratio, lumped),
         "spring_damping_N_s_per_m": dashpots_N_s_per_m(springs.nodes, springs.stiffness_N_per_m, ratio, lumped),
@@ -135,7 +135,6 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
-    refuse_beams(truss, "a truss in motion")
     if truss.nodes.fixed[:, :truss.dimension].all():
         raise StatejumpError(code="no_free_dof", case=case.name)
     for joint in JOINTS if case.motion.start != "drawn" else ():
@@ -147,6 +146,7 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
         raise NotAllowed("start.friction", case.start.friction, code="start_not_stuck", case=case.name)
     regularised = case.motion.scheme == "regularised"
     if regularised:
+        refuse_beams(truss, "motion.scheme = 'regularised'")
         # stable_steps uses the stable step of dem, which imports this module.
         from statejump.kinds.truss import stable_steps
 
