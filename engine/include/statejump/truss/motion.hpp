@@ -32,6 +32,10 @@ struct Inertia {
   Eigen::Matrix2Xd link_centre = {};
   /// Moment of inertia of each link about its centre of mass [kg m²], >= 0. Empty: rods, m l0²/12.
   Eigen::VectorXd link_moment = {};
+  Eigen::VectorXd beam_mass = {};  ///< Mass of each beam [kg], >= 0.
+  /// Moments of inertia of each beam's sections, integrated over half of its length [kg m²]: ρ J_p,
+  /// ρ I_y and ρ I_z times l/2, about axes x, y and z of the section. Empty: none.
+  Eigen::Matrix3Xd beam_moment = {};
 };
 
 /// Number of an item in a list of Inertia.
