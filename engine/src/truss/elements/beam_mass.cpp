@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <utility>
 
 #include "statejump/truss/elements/beam.hpp"
 #include "statejump/truss/motion.hpp"
@@ -25,10 +26,11 @@ void Beam::mass(const Frame& frame, const Inertia& inertia, std::size_t i,
                 MatrixWriter& writer) const {
   const double mass = inertia_of(inertia.beam_mass, i);
   const Eigen::Matrix3d axes = frame.beam.triad;
-  const Eigen::Vector3d moments = inertia.beam_moment.size() == 0
-                                      ? Eigen::Vector3d::Zero()
-                                      : Eigen::Vector3d(inertia.beam_moment.col(
-                                            static_cast<Eigen::Index>(i)));
+  Eigen::Vector3d moments =
+      inertia.beam_moment.size() == 0
+          ? Eigen::Vector3d::Zero()
+          : Eigen::Vector3d(inertia.beam_moment.col(static_cast<Eigen::Index>(i)));
+  if (frame.swapped) std::swap(moments[1], moments[2]);
   std::array<Eigen::Matrix3d, 2> by_rotation;  // of the displacement of an end
   for (std::size_t end = 0; end < 2; ++end) {
     by_rotation[end] = -cross(frame.offsets[end]) / frame.arms[end];

@@ -171,7 +171,7 @@ def eccentric(items: Sequence[Beam], dimension: int) -> tuple[str, ...]:
 
 
 class BeamType(BetweenNodes[Beam, Beams]):
-    """Beams, supported by the quasi-static solver."""
+    """Beams, supported by the reduced models."""
 
     section = "beam"
     Item = Beam
