@@ -67,7 +67,7 @@ def solved(document: Document) -> Solved:
         return Solved({}, failure=f"refused: {refused}")
     ends = path.cycle_ends["displacement_m"][:, :, : document["truss"]["dimension"]]
     jumps = ends[1:] - ends[:1]
-    idle = (force_n := np.abs(path.states["axial_force_N"])) <= IDLE * force_n.max()
+    idle = (force_n := np.abs(path.states["axial_force_N"])) <= IDLE * force_n.max(initial=0.0)
     return Solved({name: jumps[:, number] for number, name in enumerate(path.truss.nodes.names)},
                   slack_nodes(document, idle), bool((idle.any(axis=0) & ~idle.all(axis=0)).any()),
                   float(np.abs(path.states["displacement_m"]).max()), len(path.states["time_s"]), len(path.events))
@@ -79,7 +79,7 @@ def slack_nodes(document: Document, idle: np.ndarray) -> frozenset[str]:
     :param idle: which links carry no force (states, links)
     """
     alone: dict[str, np.ndarray] = {}
-    for number, link in enumerate(document["link"]):
+    for number, link in enumerate(document.get("link", ())):
         for node in link["nodes"]:
             alone[node] = alone.get(node, True) & idle[:, number]
     return frozenset(node for node, states in alone.items() if states.any())

@@ -13,7 +13,7 @@ import numpy as np
 from sketch import CLEARANCE, Document
 
 Random = np.random.Generator
-SECTIONS = ("node", "link", "spring", "torsion_spring", "slider", "iwan_joint", "latch_hinge", *CLEARANCE)
+SECTIONS = ("node", "link", "beam", "spring", "torsion_spring", "slider", "iwan_joint", "latch_hinge", *CLEARANCE)
 # Keys that hold names of other items.
 NODES = ("nodes", "bearing_node", "journal_node", "socket_node", "ball_node")
 LINKS = ("links", "bearing_link", "journal_link", "socket_link", "ball_link")
@@ -26,9 +26,10 @@ UNITS = {
     "clearance_plus_m": (1, 0), "tangent_stiffness_N_per_m": (-1, 1), "slip_force_N": (0, 1),
     "journal_radius_m": (1, 0), "ball_radius_m": (1, 0), "radial_clearance_m": (1, 0), "friction_moment_N_m": (1, 1),
     "friction_stiffness_N_m_per_rad": (1, 1), "preload_moment_N_m": (1, 1), "mass_kg": (0, 1),
+    "dimensions_m": (1, 0), "gradient_per_m": (-1, 0),
 }
 CONTACT_MODULUS_PA = 70e9  # default of joints with contacts
-VECTORS = {"node": ("position_m", "force_N", "guide_normal"), "slider": ("axis",), "iwan_joint": ("axis",)}
+VECTORS = {"node": ("position_m", "force_N", "guide_normal"), "slider": ("axis",), "beam": ("axis_y",), "iwan_joint": ("axis",)}
 AXIAL = ("revolute", "torsion_spring", "latch_hinge")  # axes about which something turns
 
 
@@ -92,6 +93,9 @@ def _mapped(document: Document, matrix: np.ndarray) -> Changed:
                 for key in ("bias_rad", "preload_moment_N_m"):
                     if key in item:
                         item[key] = -item[key]
+    for beam in made.get("beam", []) if d == 2 and sense < 0 else []:  # axis y is to the left of the beam
+        if "gradient_per_m" in beam:
+            beam["gradient_per_m"] = [-beam["gradient_per_m"][0], 0.0]
     for node in made["node"]:
         flat = [axis for axis in node.get("fixed", ()) if axis != "z"]
         if len(flat) != 1:
