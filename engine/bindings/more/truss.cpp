@@ -286,7 +286,8 @@ py::dict states_dict(const truss::Model& model, const std::vector<truss::State>&
   d["time_s"] = scalars(states, &State::time);
   d["temperature_change_K"] = scalars(states, &State::temperature_change);
   d["displacement_m"] = stacked(states, &State::displacement, 3);
-  if (!model.beams.empty()) d["rotation_rad"] = stacked(states, &State::rotation, 3);
+  const bool rotates = !states.empty() && states.front().rotation.size() > 0;
+  if (rotates) d["rotation_rad"] = stacked(states, &State::rotation, 3);
   truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
     using Type = truss::ElementType<k>;
     const std::size_t count = std::get<k>(model.lists()).size();

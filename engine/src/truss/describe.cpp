@@ -45,8 +45,8 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
   };
   const std::vector<double> changes = temperature_changes(time);
   const ElementState at_elements(drawn_, moved, changes);
+  check_rotations(at_elements);
   if (dofs_.has_rotations()) {
-    check_rotations(at_elements);
     state.displacement = moved.leftCols(size(model.nodes));
     state.rotation = moved.rightCols(size(model.nodes));
     for (int i = 0; i < size(model.nodes); ++i) state.rotation.col(i) /= model.nodes[index(i)].arm;

@@ -21,7 +21,7 @@ constexpr std::size_t nodes_at_once = 50000;
 /// moves_along() [-].
 constexpr double least_motion = 1e-9;
 
-/// Whether an element rotates a node, for every node.
+/// Whether an element or a joint rotates a node, for every node.
 std::vector<bool> rotating_nodes(const Model& model) {
   const auto nodes = static_cast<int>(model.nodes.size());
   std::vector<bool> rotates(model.nodes.size(), false);
@@ -35,6 +35,21 @@ std::vector<bool> rotating_nodes(const Model& model) {
     }
   };
   std::apply([&](const auto&... lists) { (ask(lists), ...); }, model.lists());
+  for (const Joint& joint : model.joints) {
+    const auto rotate = [&](int site) {
+      if (site >= nodes) rotates[static_cast<std::size_t>(site - nodes)] = true;
+    };
+    std::visit(
+        [&]<class Type>(const Type& one) {
+          if constexpr (requires { one.ties(model); }) {
+            for (const int site : one.frame(model).nodes) rotate(site);
+            for (const Constraint& tie : one.ties(model)) {
+              for (const ConstraintTerm& term : tie.terms) rotate(term.node);
+            }
+          }
+        },
+        joint);
+  }
   return rotates;
 }
 
@@ -57,8 +72,9 @@ DofMap::DofMap(const Model& model, const std::vector<bool>& rotates) {
       dofs_ += is_dependent(static_cast<int>(which), i) ? 0 : 1;
     if (!any) continue;
     const int rotations = rotates[which] ? node.rotations : 0;
-    sites_[count_ + which] = {dofs_, rotations, &node.rotation_directions.matrix()};
-    dofs_ += rotations;
+    const std::size_t site = count_ + which;
+    sites_[site] = {dofs_, rotations, &node.rotation_directions.matrix()};
+    for (int i = 0; i < rotations; ++i) dofs_ += is_dependent(static_cast<int>(site), i) ? 0 : 1;
   }
   if (!eliminated.sums.empty()) add_sums(eliminated);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <utility>
+#include <variant>
 
 namespace statejump::truss::detail {
 
@@ -36,12 +37,14 @@ class Eliminating {
   explicit Eliminating(const Model& model) : model_(&model) {}
 
   void add(int which) {
-    const Constraint& constraint = model_->constraints[static_cast<std::size_t>(which)];
-    Sum sum = independent(constraint);
-    if (sum.empty()) {
+    if (!add(model_->constraints[static_cast<std::size_t>(which)])) {
       made_.redundant.push_back(which);
-      return;
     }
+  }
+  /// @returns false if the constraint is redundant
+  bool add(const Constraint& constraint) {
+    Sum sum = independent(constraint);
+    if (sum.empty()) return false;
     const int pivot = pivot_of(sum);
     const double by = -1.0 / sum.at(pivot);
     sum.erase(pivot);
@@ -49,6 +52,7 @@ class Eliminating {
     substitute(pivot, sum);
     for (const auto& [place, factor] : sum) used_in_[place].insert(pivot);
     made_.sums.emplace(pivot, std::move(sum));
+    return true;
   }
   Elimination take() && { return std::move(made_); }
 
@@ -58,10 +62,18 @@ class Eliminating {
   Sum independent(const Constraint& constraint) const {
     Sum sum;
     for (const ConstraintTerm& term : constraint.terms) {
-      const Node& node = model_->nodes[static_cast<std::size_t>(term.node)];
-      for (int i = 0; i < node.freedoms; ++i) {
-        const double factor = node.free_directions.col(i).dot(term.factor);
-        if (!(std::abs(factor) > rounding_fraction * term.factor.norm())) continue;
+      const auto count = static_cast<int>(model_->nodes.size());
+      const bool is_rotation = term.node >= count;
+      const Node& node =
+          model_->nodes[static_cast<std::size_t>(is_rotation ? term.node - count : term.node)];
+      const Directions& directions = is_rotation ? node.rotation_directions : node.free_directions;
+      const int freedoms = is_rotation ? node.rotations : node.freedoms;
+      // A rotation is measured at the distance Node::arm.
+      const double unit = is_rotation ? 1.0 / node.arm : 1.0;
+      for (int i = 0; i < freedoms; ++i) {
+        const double part = directions.col(i).dot(term.factor);
+        if (!(std::abs(part) > rounding_fraction * term.factor.norm())) continue;
+        const double factor = unit * part;
         const int place = place_of(term.node, i);
         const auto dependent = made_.sums.find(place);
         if (dependent == made_.sums.end()) {
@@ -120,6 +132,15 @@ class Eliminating {
 Elimination eliminate(const Model& model) {
   Eliminating made(model);
   for (std::size_t i = 0; i < model.constraints.size(); ++i) made.add(static_cast<int>(i));
+  for (const Joint& joint : model.joints) {
+    std::visit(
+        [&]<class Type>(const Type& one) {
+          if constexpr (requires { one.ties(model); }) {
+            for (const Constraint& tie : one.ties(model)) made.add(tie);
+          }
+        },
+        joint);
+  }
   return std::move(made).take();
 }
 

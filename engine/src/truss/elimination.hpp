@@ -8,9 +8,9 @@
 
 namespace statejump::truss::detail {
 
-/// Index of a node's displacement along one of its free directions.
-inline int place_of(int node, int direction) {
-  return 3 * node + direction;
+/// Index of a site's displacement along one of its free directions.
+inline int place_of(int site, int direction) {
+  return 3 * site + direction;
 }
 
 /// Displacements that constraints determine, expressed as sums of independent displacements.
@@ -36,7 +36,8 @@ struct Elimination {
 
 /// Eliminates one constraint after another by Gauss–Jordan elimination. The pivot is the
 /// displacement with the largest factor, so that factors do not grow. Among equal factors it is the
-/// one in the fewest sums, so that chains remain sparse.
+/// one in the fewest sums, so that chains remain sparse. The constraints of the model precede the
+/// ties() of its joints.
 Elimination eliminate(const Model& model);
 
 }  // namespace statejump::truss::detail

@@ -107,7 +107,9 @@ void check_parameters(const Type& one, const Model& model) {
                                                                           : model.links.size();
         check_index(value, count, item, parameter.words);
       } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
-        check_axis(item, value);
+        if (parameter.allowed == Allowed::direction) return check_axis(item, value);
+        check(value.allFinite(), item, parameter.words, value.norm(),
+              range(parameter.allowed, parameter.unit).c_str());
       }
     };
     std::visit(check_member, parameter.member);
@@ -137,6 +139,19 @@ void check_constraint(const Constraint& constraint, const Model& model) {
     check(size > 0.0 && size >= Constraint::least_factor * largest, item, "factor", size,
           "not 0, at least 1e-9 of the largest factor");
   }
+}
+
+/// Whether joints constrain displacements linearly.
+bool has_ties(const Model& model) {
+  return std::any_of(model.joints.begin(), model.joints.end(), [](const Joint& joint) {
+    return std::visit(
+        []<class Type>(const Type& one) {
+          return requires(const Model& of) {
+            one.ties(of);
+          };
+        },
+        joint);
+  });
 }
 
 /// Rejects a joint that constrains its nodes along a direction in which supports or constraints
@@ -195,7 +210,7 @@ void Model::validate() const {
         joint);
   }
   for (const Constraint& constraint : constraints) check_constraint(constraint, *this);
-  if (!constraints.empty()) check_held_directions(*this);
+  if (!constraints.empty() || has_ties(*this)) check_held_directions(*this);
 }
 
 std::vector<int> Model::redundant_constraints() const {
@@ -209,13 +224,30 @@ double Model::lowest_strain(int program, double per_kelvin) const {
 
 void measure_rotations(Model& model) {
   std::vector<double> longest(model.nodes.size(), 0.0);
+  const auto reach = [&](int node, double length) {
+    if (node < 0 || static_cast<std::size_t>(node) >= longest.size()) return;
+    double& longest_of_node = longest[static_cast<std::size_t>(node)];
+    longest_of_node = std::max(longest_of_node, length);
+  };
+  for (const Joint& joint : model.joints) {
+    const auto* rigid = std::get_if<RigidArm>(&joint);
+    if (rigid == nullptr) continue;
+    const auto one = static_cast<std::size_t>(rigid->master);
+    const auto other = static_cast<std::size_t>(rigid->node);
+    if (one >= longest.size() || other >= longest.size()) continue;  // validate() rejects it
+    const double length = (model.nodes[other].position - model.nodes[one].position).norm();
+    reach(rigid->master, length);
+    reach(rigid->node, length);
+  }
   for (const Beam& beam : model.beams) {
     const auto one = static_cast<std::size_t>(beam.first);
     const auto other = static_cast<std::size_t>(beam.second);
     if (one >= longest.size() || other >= longest.size()) continue;  // validate() rejects it
-    const double length = (model.nodes[other].position - model.nodes[one].position).norm();
-    longest[one] = std::max(longest[one], length);
-    longest[other] = std::max(longest[other], length);
+    const double length = (model.nodes[other].position - model.nodes[one].position +
+                           beam.offset_second - beam.offset_first)
+                              .norm();
+    reach(beam.first, std::max(length, beam.offset_first.norm()));
+    reach(beam.second, std::max(length, beam.offset_second.norm()));
   }
   for (std::size_t n = 0; n < longest.size(); ++n) {
     if (longest[n] > 0.0) model.nodes[n].arm = longest[n];

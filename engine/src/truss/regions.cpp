@@ -42,7 +42,10 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
           continue;
         }
         // Its entries belong to the nodes whose dofs determine its motion.
-        for (const int other : moving_with(dofs, at)) made.push_back(other);
+        for (const int other : moving_with(dofs, at)) {
+          made.push_back(other);
+          if (dofs.has_rotations()) made.push_back(other + static_cast<int>(dofs.sites() / 2));
+        }
       }
       made.end_list();
     }
@@ -109,7 +112,8 @@ Regions regions_of(const Model& model, const DofMap& dofs, const ElementFrames& 
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {
     const int site = rotation_site(model, static_cast<int>(n));
     if (model.nodes[n].moment.isZero(0.0) || dofs.at(site).freedoms == 0) continue;
-    region(region_of_node[index(site)]).loaded.push_back(site);
+    const bool is_constrained = dofs.at(site).sums != nullptr;
+    region(is_constrained ? -1 : region_of_node[index(site)]).loaded.push_back(site);
   }
   return made;
 }

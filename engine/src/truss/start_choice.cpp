@@ -32,6 +32,13 @@ Joint without_friction(const LatchHinge& joint) {
   return loose;
 }
 
+Joint without_friction(const Hinge& joint) {
+  Hinge loose = joint;
+  loose.friction_moment = 0.0;
+  loose.friction_stiffness = rigid;
+  return loose;
+}
+
 /// All springs of an Iwan joint end in friction sliders, so without friction it is a prismatic
 /// joint.
 Joint without_friction(const IwanJoint& joint) {

@@ -148,7 +148,11 @@ Trial asked(const std::vector<Vector3d>& drawn, const JointFrame& frame, const d
       trial.moved[k].setZero();
       continue;
     }
-    trial.drawn[k] = drawn[index(node)];
+    if (index(node) < drawn.size()) {
+      trial.drawn[k] = drawn[index(node)];
+    } else {
+      trial.drawn[k].setZero();  // the rotation of a node
+    }
     trial.moved[k] = moved(node);
   }
   std::copy_n(force, frame.forces, trial.force.begin());

@@ -96,11 +96,45 @@ void for_many_states(Use&& use) {
   }
 }
 
+using Releases = std::array<std::array<bool, 3>, 2>;
+
+/// Beams with released ends: one or both planes at one end, one at each, a bar, and others.
+template <class Use>
+void for_many_releases(Use&& use) {
+  struct Case {
+    Releases released;
+    std::array<double, 2> roll;
+    bool axial = true;
+  };
+  const std::array<Case, 9> cases{
+      {{{{{false, true, false}, {false, false, false}}}, {{0.5, 0.5}}},
+       {{{{false, false, true}, {false, false, false}}}, {{0.0, 1.0}}},
+       {{{{false, true, true}, {false, false, false}}}, {{0.0, 1.0}}},
+       {{{{false, false, false}, {true, true, true}}}, {{1.0, 0.0}}},
+       {{{{false, true, false}, {false, true, false}}}, {{0.3, 0.7}}},
+       {{{{false, true, false}, {false, false, true}}}, {{1.0, 0.0}}},
+       {{{{false, true, true}, {false, true, true}}}, {{0.5, 0.5}}},
+       {{{{true, true, true}, {false, true, true}}}, {{0.5, 0.5}}},
+       {{{{false, false, true}, {false, false, false}}}, {{0.0, 1.0}}, false}}};
+  std::mt19937 random(11);
+  for (const Case& one : cases) {
+    for (const bool shears : {false, true}) {
+      Beam beam = beam_of(shears);
+      beam.released = one.released;
+      beam.roll = one.roll;
+      if (!one.axial) beam.axial = 0.0;
+      for (const double by : {1e-6, 0.1}) {
+        for (int repeat = 0; repeat < 5; ++repeat) use(beam, random_ends(beam, by, random));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 // Differences of the energy have an error of 1e-16 W/h + h⁶: 1e-11 of the largest force.
 TEST(Beam, ForcesAreTheGradientOfTheEnergy) {
-  for_many_states([](const Beam& beam, const Ends& ends) {
+  const auto check = [](const Beam& beam, const Ends& ends) {
     const Vector12 force = beam_step(beam, ends.state()).gradient();
     const double scale = std::max(1.0, force.lpNorm<Eigen::Infinity>());
     for (int i = 0; i < 12; ++i) {
@@ -108,11 +142,13 @@ TEST(Beam, ForcesAreTheGradientOfTheEnergy) {
           2e-3, [&](double h) { return BeamStep(beam, ends.moved(i, h).state()).energy(); });
       EXPECT_NEAR(force[i], by_energy, 1e-10 * scale) << i;
     }
-  });
+  };
+  for_many_states(check);
+  for_many_releases(check);
 }
 
 TEST(Beam, TangentIsTheDerivativeOfTheForces) {
-  for_many_states([](const Beam& beam, const Ends& ends) {
+  const auto check = [](const Beam& beam, const Ends& ends) {
     const Matrix12 tangent = BeamStep(beam, ends.state()).tangent();
     const double scale = tangent.lpNorm<Eigen::Infinity>();
     for (int j = 0; j < 12; ++j) {
@@ -121,11 +157,13 @@ TEST(Beam, TangentIsTheDerivativeOfTheForces) {
       });
       EXPECT_LT((tangent.col(j) - by_force).lpNorm<Eigen::Infinity>(), 1e-11 * scale) << j;
     }
-  });
+  };
+  for_many_states(check);
+  for_many_releases(check);
 }
 
 TEST(Beam, DerivativesByTheStressFreeShape) {
-  for_many_states([](const Beam& beam, const Ends& ends) {
+  const auto check = [](const Beam& beam, const Ends& ends) {
     const BeamStep at(beam, ends.state());
     const auto with = [&](double length, double second, double third) {
       Ends made = ends;
@@ -148,19 +186,23 @@ TEST(Beam, DerivativesByTheStressFreeShape) {
     EXPECT_LT((at.gradient_by_length() - by(force, 1, 0, 0)).norm(), 1e-10 * scale);
     EXPECT_LT((at.gradient_by_curvature(0) - by(force, 0, 1, 0)).norm(), 1e-10 * scale);
     EXPECT_LT((at.gradient_by_curvature(1) - by(force, 0, 0, 1)).norm(), 1e-10 * scale);
-  });
+  };
+  for_many_states(check);
+  for_many_releases(check);
 }
 
 // Forces, and moments about the first end, balance to rounding: some 1e-16 of the largest force.
 TEST(Beam, ForcesAndMomentsBalance) {
-  for_many_states([](const Beam& beam, const Ends& ends) {
+  const auto check = [](const Beam& beam, const Ends& ends) {
     const Vector12 force = BeamStep(beam, ends.state()).gradient();
     const double scale = force.lpNorm<Eigen::Infinity>();
     const Vector3 arm = ends.place[1] - ends.place[0];
     EXPECT_LT((force.segment<3>(0) + force.segment<3>(6)).norm(), 1e-14 * scale);
     EXPECT_LT((force.segment<3>(3) + force.segment<3>(9) + cross(arm, force.segment<3>(6))).norm(),
               2e-14 * scale);
-  });
+  };
+  for_many_states(check);
+  for_many_releases(check);
 }
 
 /// Everything rotated about the origin.
@@ -200,6 +242,53 @@ TEST(Beam, RigidMotionHasNoForce) {
   for (const double angle : {0.5, 3.1, 1000.0}) {
     const Ends at = rotated(ends, rotation_of(angle * Vector3(0.48, -0.6, 0.64)));
     EXPECT_LT(BeamStep(beam, at.state()).gradient().norm(), 1e-12 * beam.axial);
+  }
+}
+
+// A released moment is zero. Both released planes and a released torsion make a bar: its force does
+// not depend on the rotations of its nodes, however large.
+TEST(Beam, ReleasedEndsTransmitNoMoment) {
+  for_many_releases([](const Beam& beam, const Ends& ends) {
+    const BeamStep at(beam, ends.state());
+    const Vector12 force = at.gradient_in_frame();
+    for (std::size_t end = 0; end < 2; ++end) {
+      const auto row = 6 * static_cast<Eigen::Index>(end) + 3;
+      const bool has_torsion = !beam.released[0][0] && !beam.released[1][0];
+      if (has_torsion || !beam.released[end][1] || !beam.released[end][2]) continue;
+      EXPECT_EQ(force.segment<3>(row).norm(), 0.0);
+    }
+    const bool is_bar = beam.released[0][0] && beam.released[1][1] && beam.released[1][2];
+    if (!is_bar) return;
+    EXPECT_LT(force.segment(1, 5).norm() + force.tail(5).norm(), 1e-12 * beam.axial);
+    Ends other = ends;
+    other.rotation[0] = rotation_of(Vector3(1.0, -2.0, 2.0)) * other.rotation[0];
+    other.rotation[1] = rotation_of(Vector3(-2.5, 0.3, 1.0)) * other.rotation[1];
+    const BeamStep spun(beam, other.state());
+    EXPECT_NEAR(spun.tension(), at.tension(), 1e-12 * beam.axial);
+    EXPECT_NEAR(spun.energy(), at.energy(), 1e-12 * beam.axial);
+    EXPECT_LE(spun.largest_local_rotation(), BeamStep::largest_rotation);
+  });
+}
+
+// Cantilever with a hinge at its tip: 3 E I/l³ (1 + Φ/4)⁻¹ against a transverse force.
+TEST(Beam, HingedEndHasTheStiffnessOfAProppedCantilever) {
+  for (const bool shears : {false, true}) {
+    Beam beam = beam_of(shears);
+    beam.triad.setIdentity();
+    beam.released = {{{false, false, false}, {false, true, true}}};
+    beam.roll = {{1.0, 0.0}};
+    BeamState at;
+    at.along = {drawn_length, 0.0, 0.0};
+    at.free_length = drawn_length;
+    const Matrix12 tangent = BeamStep(beam, at).tangent();
+    const double cube = drawn_length * drawn_length * drawn_length;
+    for (const std::size_t k : {0u, 1u}) {
+      const double phi = 12.0 * beam.bending[k] / (beam.shear[k] * drawn_length * drawn_length);
+      const auto row = static_cast<Eigen::Index>(k == 0 ? 8 : 7);
+      const double expected = 3.0 * beam.bending[k] / cube / (1.0 + 0.25 * phi);
+      EXPECT_NEAR(tangent(row, row), expected, 1e-13 * beam.axial);
+    }
+    EXPECT_LT(tangent.bottomRightCorner(2, 2).norm(), 1e-13 * beam.axial);
   }
 }
 

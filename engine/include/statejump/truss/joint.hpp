@@ -6,10 +6,12 @@
 #include <variant>
 
 #include "statejump/truss/joints/ball_joint.hpp"
+#include "statejump/truss/joints/hinge.hpp"
 #include "statejump/truss/joints/interface.hpp"
 #include "statejump/truss/joints/iwan_joint.hpp"
 #include "statejump/truss/joints/latch_hinge.hpp"
 #include "statejump/truss/joints/revolute.hpp"
+#include "statejump/truss/joints/rigid_arm.hpp"
 #include "statejump/truss/joints/slider.hpp"
 
 namespace statejump::truss {
@@ -19,7 +21,7 @@ template <JointType... Types>
 using JointOf = std::variant<Types...>;
 
 /// The registry of joints. To add a type, change this list only.
-using Joint = JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint>;
+using Joint = JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint, RigidArm, Hinge>;
 
 inline const std::string& name_of(const Joint& joint) {
   return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);

@@ -44,7 +44,7 @@ struct Node {
   int freedoms = 3;            ///< 0: fixed.
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
 
-  // The rest matters only where a beam ends; other nodes do not rotate.
+  // The rest matters only for nodes that a beam, a rigid body or a hinge rotates.
   Directions rotation_directions;  ///< The node may rotate about the first `rotations` of them.
   int rotations = 3;               ///< 0: clamped.
   /// Conjugate to the rotation vector of the node [N m]. Its potential is −moment · rotation
@@ -59,9 +59,10 @@ struct Node {
 /// is not unique.
 constexpr double largest_node_rotation = 5.5;
 
-/// A term of a constraint: displacement of a node along a vector, times the vector's length.
+/// A term of a constraint: displacement of a node along a vector, times the vector's length. For a
+/// rotation_site() the rotation vector [rad] replaces the displacement.
 struct ConstraintTerm {
-  int node = 0;                                      ///< Number.
+  int node = 0;                                      ///< Site.
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< [-]
 };
 
@@ -112,7 +113,7 @@ inline int rotation_site(const Model& model, int node) {
   return static_cast<int>(model.nodes.size()) + node;
 }
 
-/// Sets Node::arm of all nodes of beams.
+/// Sets Node::arm of all nodes that rotate.
 void measure_rotations(Model& model);
 
 /// Multiplies the stress that all elements have in the reference configuration by a fraction.

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
+#include "statejump/kernel/beam.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/model.hpp"
 #include "truss/elements/axial.hpp"
@@ -34,8 +37,11 @@ struct Moved {
 /// @param moved_at displacement of a site [m]
 template <class MovedAt>
 Moved moved_of(const Beam::Frame& frame, MovedAt&& moved_at) {
-  return {{moved_at(frame.nodes[0]), moved_at(frame.nodes[1])},
-          {moved_at(frame.nodes[2]) / frame.arms[0], moved_at(frame.nodes[3]) / frame.arms[1]}};
+  const auto rotation = [&](std::size_t end) -> Vector3d {
+    const int site = frame.nodes[2 + end];
+    return site < 0 ? Vector3d::Zero() : Vector3d(moved_at(site) / frame.arms[end]);
+  };
+  return {{moved_at(frame.nodes[0]), moved_at(frame.nodes[1])}, {rotation(0), rotation(1)}};
 }
 
 Moved moved_of(const Beam::Frame& frame, const ElementState& state) {
@@ -58,19 +64,31 @@ std::array<double, 2> curvature_per_kelvin(const Beam& beam) {
   return {beam.thermal_expansion * beam.gradient_z, -beam.thermal_expansion * beam.gradient_y};
 }
 
+/// Displacement (R − I) r of the end of a rigid arm r at a node at rest [m].
+Vector3d swung(const kernel::Quaternion& rotation, const Vector3d& arm) {
+  const Vector3d once = 2.0 * rotation.vec().cross(arm);
+  return rotation.w() * once + rotation.vec().cross(once);
+}
+
+/// @param drawn from the first node to the second in the reference configuration [m]
 BeamStep step_at(const Beam& beam, const Beam::Frame& frame, const Vector3d& drawn,
                  const Moved& moved, const Temperatures& at) {
-  const detail::Lengths length = detail::lengths(drawn, moved.places[1] - moved.places[0]);
+  kernel::BeamState state;
+  state.first = kernel::rotation_of(moved.rotations[0]);
+  state.second = kernel::rotation_of(moved.rotations[1]);
+  const Vector3d apart =
+      moved.places[1] - moved.places[0] +
+      (swung(state.second, frame.offsets[1]) - swung(state.first, frame.offsets[0]));
+  const detail::Lengths length =
+      detail::lengths(drawn + (frame.offsets[1] - frame.offsets[0]), apart);
   const double change = beam.temperature_fraction * at.mean;
   const double l0 = beam.stress_free_length;
   const std::array<double, 2> curvature = curvature_per_kelvin(beam);
-  kernel::BeamState state;
   state.along = length.along;
   state.stretch = detail::stretch(length.growth, length.drawn, l0, beam.thermal_expansion, change);
-  state.first = kernel::rotation_of(moved.rotations[0]);
-  state.second = kernel::rotation_of(moved.rotations[1]);
   state.free_length = thermal::length(l0, beam.thermal_expansion, change);
   state.curvature = {curvature[0] * at.gradient, curvature[1] * at.gradient};
+  if (frame.swapped) state.curvature = {state.curvature[1], -state.curvature[0]};
   return {frame.beam, state};
 }
 
@@ -85,6 +103,36 @@ std::array<kernel::Matrix3, 2> spin_maps(const Beam::Frame& frame, const Moved& 
           kernel::spin_map(moved.rotations[1]) / frame.arms[1]};
 }
 
+/// The arms from the nodes to the ends of the beam [m].
+std::array<Vector3d, 2> arms_at(const Beam::Frame& frame, const Moved& moved) {
+  return {kernel::rotation_of(moved.rotations[0]) * frame.offsets[0],
+          kernel::rotation_of(moved.rotations[1]) * frame.offsets[1]};
+}
+
+/// Forces and moments on the nodes for those on the ends of the beam.
+Vector12 at_nodes(const std::array<Vector3d, 2>& arms, Vector12 force) {
+  for (std::size_t end = 0; end < 2; ++end) {
+    const auto row = 6 * static_cast<Eigen::Index>(end);
+    const Vector3d pull = force.segment<3>(row);
+    force.segment<3>(row + 3) += arms[end].cross(pull);
+  }
+  return force;
+}
+
+/// Derivative of at_nodes() by displacements and spins of the nodes.
+/// @param tangent derivative of the forces on the ends by displacements and spins of the ends
+void shift_to_nodes(const std::array<Vector3d, 2>& arms, const Vector12& force, Matrix12& tangent) {
+  for (int end = 0; end < 2; ++end) {
+    const Vector3d& arm = arms[index(end)];
+    if (arm.isZero(0.0)) continue;
+    const kernel::Matrix3 across = kernel::skew(arm);
+    const int at = 6 * end;
+    tangent.middleCols<3>(at + 3) -= (tangent.middleCols<3>(at) * across).eval();
+    tangent.middleRows<3>(at + 3) += (across * tangent.middleRows<3>(at)).eval();
+    tangent.block<3, 3>(at + 3, at + 3) += kernel::skew(force.segment<3>(at)) * across;
+  }
+}
+
 void write_forces(const Beam::Frame& frame, const std::array<kernel::Matrix3, 2>& maps,
                   const Vector12& force, ElementWriter& writer) {
   for (std::size_t end = 0; end < 2; ++end) {
@@ -92,6 +140,57 @@ void write_forces(const Beam::Frame& frame, const std::array<kernel::Matrix3, 2>
     writer.force(frame.nodes[end], force.segment<3>(row));
     writer.force(frame.nodes[2 + end], maps[end].transpose() * force.segment<3>(row + 3));
   }
+}
+
+/// From the first to the second end in the reference configuration [m].
+Vector3d drawn_vector(const Model& model, const Beam& beam) {
+  return model.nodes[index(beam.second)].position - model.nodes[index(beam.first)].position +
+         (beam.offset_second - beam.offset_first);
+}
+
+/// Whether the rotation of a node acts on an end: by an offset, or by a moment that the end
+/// transmits about an axis about which the node may rotate.
+bool rotates(const Beam::Frame& frame, std::size_t end, const Node& node) {
+  if (!frame.offsets[end].isZero(0.0)) return true;
+  const auto& released = frame.beam.released;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto which = static_cast<std::size_t>(axis);
+    // A torsion released at one end acts on neither.
+    const bool is_released = axis == 0 ? released[0][0] || released[1][0] : released[end][which];
+    if (is_released) continue;
+    for (int i = 0; i < node.rotations; ++i) {
+      const double part = frame.beam.triad.col(axis).dot(node.rotation_directions.col(i));
+      if (std::abs(part) > 1e-9) return true;
+    }
+  }
+  return false;
+}
+
+/// How the rotations of the ends determine the roll of the beam.
+struct Roll {
+  std::array<double, 2> weights;
+  bool by_axis_z;  ///< By axis z of the section, not by axis y.
+};
+
+/// Chooses as many ends as possible, and an axis that their released rotations do not tilt:
+/// released moments about z tilt axis y. An end that releases the torsion is the last choice.
+Roll roll_of(const std::array<std::array<bool, 3>, 2>& released) {
+  for (const bool with_torsion : {false, true}) {
+    Roll best{{0.0, 0.0}, false};
+    double most = 0.0;
+    for (const std::size_t tilting : {std::size_t(2), std::size_t(1)}) {
+      std::array<double, 2> usable{};
+      for (std::size_t end = 0; end < 2; ++end) {
+        usable[end] = !released[end][tilting] && (with_torsion || !released[end][0]) ? 1.0 : 0.0;
+      }
+      const double sum = usable[0] + usable[1];
+      if (sum <= most) continue;
+      most = sum;
+      best = {{usable[0] / sum, usable[1] / sum}, tilting == 1};
+    }
+    if (most > 0.0) return best;
+  }
+  return {{0.5, 0.5}, false};
 }
 
 }  // namespace
@@ -126,6 +225,26 @@ std::span<const Parameter<Beam>> Beam::parameters() {
       {"gradient_per_m", "gradient along z", "1/m", Allowed::finite, "the case", &Beam::gradient_z,
        1, 2},
       {"axis_y", "axis_y", "-", Allowed::direction, "the case", &Beam::axis_y},
+      {"offset_first_m", "offset of the first end", "m", Allowed::finite, "the case",
+       &Beam::offset_first},
+      {"offset_second_m", "offset of the second end", "m", Allowed::finite, "the case",
+       &Beam::offset_second},
+      {"released_first", "axial force", "-", Allowed::flag, "the case", &Beam::released_first_axial,
+       0, 4},
+      {"released_first", "moment about x", "-", Allowed::flag, "the case", &Beam::released_first_x,
+       1, 4},
+      {"released_first", "moment about y", "-", Allowed::flag, "the case", &Beam::released_first_y,
+       2, 4},
+      {"released_first", "moment about z", "-", Allowed::flag, "the case", &Beam::released_first_z,
+       3, 4},
+      {"released_second", "axial force", "-", Allowed::flag, "the case",
+       &Beam::released_second_axial, 0, 4},
+      {"released_second", "moment about x", "-", Allowed::flag, "the case",
+       &Beam::released_second_x, 1, 4},
+      {"released_second", "moment about y", "-", Allowed::flag, "the case",
+       &Beam::released_second_y, 2, 4},
+      {"released_second", "moment about z", "-", Allowed::flag, "the case",
+       &Beam::released_second_z, 3, 4},
   };
   return table;
 }
@@ -142,12 +261,21 @@ std::span<const Output> Beam::outputs() {
 }
 
 void Beam::validate(const Model& model, std::span<const TemperatureRange> ranges) const {
-  detail::check_length(kind, name, model, first, second);
+  const Vector3d along = drawn_vector(model, *this);
+  if (!(along.norm() > 0.0)) {
+    throw kernel::OutOfRange(named(*this), "distance of its ends", along.norm(), "> 0 m");
+  }
+  for (const auto& [at_first, at_second, what] :
+       {std::tuple(released_first_axial, released_second_axial, "axial force"),
+        std::tuple(released_first_x, released_second_x, "torsion")}) {
+    if (at_first && at_second) {
+      throw kernel::OutOfRange(named(*this), "ends that release its " + std::string(what), 2.0,
+                               "at most 1");
+    }
+  }
   detail::check_expansion(kind, name, thermal_expansion, temperature_fraction,
                           ranges[index(program)]);
-  const Vector3d along =
-      (model.nodes[index(second)].position - model.nodes[index(first)].position).normalized();
-  const double skew = along.dot(axis_y);
+  const double skew = along.normalized().dot(axis_y);
   if (!(std::abs(skew) < 1e-9)) {
     throw kernel::OutOfRange(named(*this), "component of axis_y along the beam", skew, "0");
   }
@@ -158,15 +286,32 @@ Beam::Frame Beam::frame(const Model& model) const {
   const Node& other = model.nodes[index(second)];
   Frame made{{first, second, rotation_site(model, first), rotation_site(model, second)},
              {one.arm, other.arm},
-             {}};
-  made.beam.axial = axial_stiffness;
+             {offset_first, offset_second},
+             {},
+             false};
+  const bool has_tension = !released_first_axial && !released_second_axial;
+  made.beam.axial = has_tension ? axial_stiffness : 0.0;
   made.beam.torsional = torsional_stiffness;
   made.beam.bending = {bending_stiffness_y, bending_stiffness_z};
   // Bending about y shears along z.
   made.beam.shear = {shear_stiffness_z, shear_stiffness_y};
-  const Vector3d along = (other.position - one.position).normalized();
+  const Vector3d along = drawn_vector(model, *this).normalized();
   const Vector3d axis_z = along.cross(axis_y).normalized();
   made.beam.triad << along, axis_z.cross(along), axis_z;
+  made.beam.released = released_moments();
+  for (std::size_t end = 0; end < 2; ++end) {
+    const Node& node = end == 0 ? one : other;
+    if (rotates(made, end, node)) continue;
+    made.nodes[2 + end] = -1;
+  }
+  const Roll roll = roll_of(released_moments());
+  made.beam.roll = roll.weights;
+  made.swapped = roll.by_axis_z;
+  if (!made.swapped) return made;
+  std::swap(made.beam.bending[0], made.beam.bending[1]);
+  std::swap(made.beam.shear[0], made.beam.shear[1]);
+  for (auto& end : made.beam.released) std::swap(end[1], end[2]);
+  made.beam.triad << along, axis_z, -axis_z.cross(along);
   return made;
 }
 
@@ -174,7 +319,9 @@ ElementScale Beam::scale(const Frame& frame, const std::vector<Vector3d>& drawn)
   const double l0 = stress_free_length;
   const double axial = axial_stiffness / l0;
   const double bending = 12.0 * std::max(bending_stiffness_y, bending_stiffness_z) / (l0 * l0 * l0);
-  const double length = (drawn[index(frame.nodes[1])] - drawn[index(frame.nodes[0])]).norm();
+  const double length = (drawn[index(frame.nodes[1])] - drawn[index(frame.nodes[0])] +
+                         frame.offsets[1] - frame.offsets[0])
+                            .norm();
   const double gradient = std::hypot(gradient_y, gradient_z) * l0;
   const bool by_gradient = gradient > std::abs(temperature_fraction);
   return {std::max(axial, bending), axial * std::abs(length - l0),
@@ -183,7 +330,7 @@ ElementScale Beam::scale(const Frame& frame, const std::vector<Vector3d>& drawn)
 }
 
 void Beam::scale_misfit(const Model& model, double fraction) {
-  const double drawn = detail::drawn_length(model, first, second);
+  const double drawn = drawn_vector(model, *this).norm();
   stress_free_length = drawn + fraction * (stress_free_length - drawn);
 }
 
@@ -191,7 +338,9 @@ void Beam::evaluate(const Frame& frame, const ElementState& state, ElementWriter
   const BeamStep step = step_at(*this, frame, state);
   const Moved moved = moved_of(frame, state);
   const std::array<kernel::Matrix3, 2> maps = spin_maps(frame, moved);
-  const Vector12 force = step.gradient();
+  const std::array<Vector3d, 2> arms = arms_at(frame, moved);
+  const Vector12 force_at_ends = step.gradient();
+  const Vector12 force = at_nodes(arms, force_at_ends);
   write_forces(frame, maps, force, writer);
   for (Eigen::Index end = 0; end < 2; ++end) {
     writer.carries(force.segment<3>(6 * end).norm());
@@ -200,6 +349,7 @@ void Beam::evaluate(const Frame& frame, const ElementState& state, ElementWriter
   if (writer.residual_only()) return;
   // The Hessian of the energy in displacements and rotation vectors.
   Matrix12 hessian = step.tangent();
+  shift_to_nodes(arms, force_at_ends, hessian);
   for (int end = 0; end < 2; ++end) {
     const int at = 6 * end + 3;
     const std::size_t which = index(end);
@@ -229,7 +379,8 @@ void Beam::thermal_rate(const Frame& frame, const ElementState& state,
   const Vector12 rate = growth * step.gradient_by_length() +
                         bend[0] * step.gradient_by_curvature(0) +
                         bend[1] * step.gradient_by_curvature(1);
-  write_forces(frame, spin_maps(frame, moved_of(frame, state)), rate, writer);
+  const Moved moved = moved_of(frame, state);
+  write_forces(frame, spin_maps(frame, moved), at_nodes(arms_at(frame, moved), rate), writer);
 }
 
 double Beam::energy(const Frame& frame, const ElementState& state) const {
@@ -240,11 +391,32 @@ void Beam::describe(const Frame& frame, const ElementState& state, double* outpu
   Eigen::Map<Vector12> found(outputs);
   found = step_at(*this, frame, state).gradient_in_frame();
   found.head<6>() *= -1.0;
+  if (!frame.swapped) return;
+  for (Eigen::Index block = 0; block < 4; ++block) {
+    const double along_y = -found[3 * block + 2];
+    found[3 * block + 2] = found[3 * block + 1];
+    found[3 * block + 1] = along_y;
+  }
 }
 
 void Beam::check_state(const Frame& frame, const ElementState& state) const {
-  const double largest = step_at(*this, frame, state).largest_local_rotation();
+  const BeamStep step = step_at(*this, frame, state);
+  if (step.buckles()) {
+    throw kernel::OutOfRange(
+        named(*this), "axial force", step.tension(),
+        "above the buckling load of a beam with released ends [N]; use a larger "
+        "section or a shorter beam");
+  }
+  const double largest = step.largest_local_rotation();
   if (largest <= BeamStep::largest_rotation) return;
+  const bool is_released = std::any_of(frame.beam.released.begin(), frame.beam.released.end(),
+                                       [](const auto& end) { return end[1] || end[2]; });
+  if (is_released) {
+    throw kernel::OutOfRange(
+        named(*this), "rotation of a node relative to the beam", largest,
+        "at most 1 rad, if the end also transmits a moment about another axis; "
+        "use a hinge");
+  }
   throw kernel::OutOfRange(named(*this), "rotation of an end relative to the beam", largest,
                            "at most 1 rad; divide the beam into more beams");
 }

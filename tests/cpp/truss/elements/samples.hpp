@@ -87,6 +87,33 @@ inline Model sample(std::type_identity<Beam>) {
   model.beams[2].program = 1;
   model.beams[2].gradient_z = 4.0;
   measure_rotations(model);
+  // Ends with releases and offsets.
+  const std::size_t plain = model.beams.size();
+  for (std::size_t k = 0; k < 6; ++k) model.beams.push_back(model.beams[k % plain]);
+  model.beams[plain].name = "ball";
+  model.beams[plain].released_second_x = true;
+  model.beams[plain].released_second_y = model.beams[plain].released_second_z = true;
+  model.beams[plain + 1].name = "hinge about z";
+  model.beams[plain + 1].released_second_z = true;
+  model.beams[plain + 2].name = "hinges about y and z";
+  model.beams[plain + 2].released_first_y = model.beams[plain + 2].released_second_z = true;
+  model.beams[plain + 3].name = "bar on arms";
+  model.beams[plain + 3].released_first_x = true;
+  model.beams[plain + 3].released_first_y = model.beams[plain + 3].released_first_z = true;
+  model.beams[plain + 3].released_second_y = model.beams[plain + 3].released_second_z = true;
+  model.beams[plain + 4].name = "arms";
+  model.beams[plain + 5].name = "telescope";
+  model.beams[plain + 5].released_second_axial = true;
+  for (std::size_t k = plain + 3; k < model.beams.size(); ++k) {
+    Beam& one = model.beams[k];
+    one.offset_first = {0.1, -0.2, 0.05};
+    one.offset_second = {-0.05, 0.1, 0.15};
+    const Eigen::Vector3d along = model.nodes[static_cast<std::size_t>(one.second)].position -
+                                  model.nodes[static_cast<std::size_t>(one.first)].position +
+                                  one.offset_second - one.offset_first;
+    one.axis_y = along.cross(Eigen::Vector3d(0.3, 0.2, 0.7)).normalized();
+    one.stress_free_length = 1.02 * along.norm();
+  }
   return model;
 }
 

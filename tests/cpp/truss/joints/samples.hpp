@@ -104,4 +104,28 @@ inline JointSample sample(std::type_identity<BallJoint>) {
   return made;
 }
 
+inline JointSample sample(std::type_identity<RigidArm>) {
+  RigidArm one;
+  one.name = std::string("joint");
+  one.master = 0;
+  one.node = 2;
+  JointSample made = two_links(one);
+  made.statuses = {JointStatus::stick};
+  measure_rotations(made.model);
+  return made;
+}
+
+inline JointSample sample(std::type_identity<Hinge>) {
+  Hinge one;
+  one.name = std::string("joint");
+  one.first = 1;
+  one.second = 3;
+  one.deadband = 1e-3;
+  one.stiffness = 0.3;
+  one.friction_moment = 0.2;
+  one.preload_moment = -0.1;
+  one.axis = Eigen::Vector3d(1.0, 2.0, 9.0).normalized();
+  return two_links(one);
+}
+
 }  // namespace statejump::truss::testing

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "statejump/kernel/beam.hpp"
+#include "statejump/kernel/beam_state.hpp"
 #include "statejump/truss/elements/interface.hpp"
 
 namespace statejump::truss {
@@ -33,14 +33,32 @@ struct Beam {
   double gradient_y = 0.0;
   double gradient_z = 0.0;
   Eigen::Vector3d axis_y = Eigen::Vector3d::UnitY();  ///< Of the section, across the beam.
+  /// From each node to its end of the beam in the reference configuration [m]: a rigid arm that
+  /// rotates with the node.
+  Eigen::Vector3d offset_first = Eigen::Vector3d::Zero();
+  Eigen::Vector3d offset_second = Eigen::Vector3d::Zero();
+  // Forces and moments that an end does not transmit to its node, in the axes of the section.
+  bool released_first_axial = false;
+  bool released_first_x = false;  ///< Moment about x, the torsion.
+  bool released_first_y = false;
+  bool released_first_z = false;
+  bool released_second_axial = false;
+  bool released_second_x = false;
+  bool released_second_y = false;
+  bool released_second_z = false;
 
   static constexpr const char* kind = "beam";
   static constexpr const char* table = "beams";
   static constexpr int dofs_per_node = 6;
   struct Frame {
-    std::array<int, 4> nodes;    ///< Both nodes, then their rotations, see rotation_site().
-    std::array<double, 2> arms;  ///< Node::arm of both nodes [m].
+    /// Both nodes, then their rotations, see rotation_site(); −1: the rotation of the node has no
+    /// effect, because the end is released.
+    std::array<int, 4> nodes;
+    std::array<double, 2> arms;              ///< Node::arm of both nodes [m].
+    std::array<Eigen::Vector3d, 2> offsets;  ///< From the nodes to the ends of the beam [m].
     kernel::Beam beam;
+    /// Whether `beam` has axis z of the section as axis 2, and −y as axis 3.
+    bool swapped = false;
   };
   static std::span<const Parameter<Beam>> parameters();
   static std::span<const Output> outputs();
@@ -57,7 +75,13 @@ struct Beam {
   /// Beams in motion are not supported.
   void mass(const Frame&, const Inertia&, std::size_t, MatrixWriter&) const {}
   Dashpot dashpot(const Frame&, const Inertia&, std::size_t) const { return {}; }
-  /// Rejects a state in which an end has rotated by more than 1 rad relative to the beam.
+  /// Released moments about x, y and z of the ends.
+  std::array<std::array<bool, 3>, 2> released_moments() const {
+    return {{{released_first_x, released_first_y, released_first_z},
+             {released_second_x, released_second_y, released_second_z}}};
+  }
+  /// Rejects a state in which an end has rotated by more than 1 rad relative to the beam, or in
+  /// which a beam with released ends buckles between them.
   void check_state(const Frame& frame, const ElementState& state) const;
 };
 

@@ -54,10 +54,12 @@ constexpr int most_joint_forces = 3;
 
 /// Position of a joint in the truss, determined once.
 struct JointFrame {
-  /// Nodes of the joint: those that it moves, and those whose links rotate its parts. −1 means the
-  /// ground, or no node.
+  /// Sites of the joint: nodes that it moves, nodes whose links rotate its parts, and rotations of
+  /// nodes, see rotation_site(). −1 means the ground, or no node.
   std::array<int, most_joint_nodes> nodes{-1, -1, -1, -1};
   int node_count = 0;
+  /// Node::arm of the sites that are rotations [m].
+  std::array<double, most_joint_nodes> arms{1.0, 1.0, 1.0, 1.0};
   int forces = 0;    ///< Unknown forces, each with a row of its own.
   int program = -1;  ///< Temperature program that it follows; −1: none.
   double temperature_fraction = 1.0;
@@ -74,7 +76,8 @@ struct Trial {
   explicit Trial(const JointFrame& of) : frame(of) {}
 
   const JointFrame& frame;
-  std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Positions of its nodes, ΔT = 0 [m].
+  std::array<Eigen::Vector3d, most_joint_nodes>
+      drawn;  ///< Positions of its nodes, ΔT = 0 [m]; rotations: 0.
   std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
   std::array<double, most_joint_forces> force{};        ///< Its unknowns [N].
   const double* history = nullptr;          ///< Memory of the joint at the start of the step.
@@ -163,6 +166,7 @@ struct Seat {
 /// | `beyond_edges()` | distance beyond each edge at which the stiffness jumps [m] |
 /// | `has_kinks` | its force has kinks within a status, which no step ends at |
 /// | `slack_motion()` | motion of an open joint since the start of the step [m] |
+/// | `ties()` | linear constraints of its nodes, see ConstraintTerm |
 ///
 /// @pre of all but validate(): the joint and the truss around it are valid. evaluate() writes the
 /// same entries for every status. The histories of begin(), commit() and Trial have history()
