@@ -607,7 +607,7 @@ CODES: dict[str, Code] = {
         remedy="'statejump reduced --dynamic' runs the case",
     ),
     "beams_not_supported": Code(
-        what="{part} bends",
+        what="{part} rotates its nodes",
         cause="{model} has no rotations of nodes",
         remedy="run its quasi-static path: 'statejump reduced'",
     ),
@@ -630,6 +630,7 @@ CODES: dict[str, Code] = {
     "beam_not_positive": Code(cause="must be numbers above 0"),
     "beam_section_missing": Code(cause="shape = 'general' needs it"),
     "beam_walls": Code(cause="{rule}"),
+    "coincident_ends": Code(cause="its two ends are at one position"),
     "ball_joint_planar": Code(
         cause="a ball joint needs 3: its friction has two directions; in a planar truss a revolute does the same",
     ),
@@ -728,6 +729,21 @@ CODES: dict[str, Code] = {
     "equal_nodes": Code(cause="must be two different nodes"),
     "unused_by_scheme": Code(cause="it is not read {scheme}"),
     "nothing_to_scale": Code(cause="it has no value but 0 in this case: there is nothing to scale"),
+    "hinge_apart": Code(cause="its nodes are {apart_m:g} m apart", remedy="put them at one position"),
+    "hinge_sticking_missing": Code(cause="reduced.sticking = {sticking!r} needs it, the hinge has no stiffness"),
+    "released_twice": Code(cause="both ends release the {released}", remedy="release it at one end"),
+    "rigid_node_fixed": Code(cause="supports hold it and the master, so the force of its arm is not unique",
+                             remedy="leave it out"),
+    "rigid_node_repeated": Code(cause="must be different nodes other than the master"),
+    "rigid_node_twice": Code(cause="another arm carries it", remedy="put the nodes into one [[rigid]]"),
+    "rigid_ring": Code(cause="its own arms carry the master", remedy="leave one [[rigid]] of the ring out"),
+    "rigid_rotations": Code(cause="must be all rotations, or none"),
+    "rigid_without_direction": Code(cause="must name a direction of the truss"),
+    "rigid_without_node": Code(cause="must name a node"),
+    "offset_with_gravity": Code(
+        cause="the weight of a beam acts at its nodes, without the moment of an offset",
+        remedy="use a [[rigid]] from the node to a node at the end of the beam",
+    ),
     "output_unknown": Code(cause="must be 'node', 'node:NAME', 'rms' or 'tilt'"),
     "partial_slip_rigid": Code(
         cause=(
@@ -739,9 +755,11 @@ CODES: dict[str, Code] = {
         cause="contacts that slip in part (reduced.sticking = \"partial_slip\") have no cone of Coulomb's",
         remedy='set reduced.sticking to "elastic" or "rigid"',
     ),
-    "node_without_rotation": Code(cause="no beam ends at the node, so it does not rotate"),
+    "node_without_rotation": Code(
+        cause="no beam, rigid body or hinge rotates the node; a beam end that releases all moments does not"),
     "planar_axis": Code(cause="in a planar truss it is z"),
     "planar_axis_y": Code(cause="in a planar truss y of a section lies in the plane, to the left of its beam"),
+    "planar_releases": Code(cause="in a planar truss the ends of a beam release 'Fx' and 'Rz' only"),
     "planar_gradient": Code(cause="in a planar truss the gradient along z of a section must be 0"),
     "planar_rotations": Code(cause="a planar truss rotates about 'z' only"),
     "planar_directions": Code(cause="a planar truss has 'x' and 'y' only"),

@@ -48,6 +48,9 @@ def check(case: TrussSections, links: Mapping[str, Any]) -> None:
     for beam in case.beam if heavy else ():
         if beam.density_kg_per_m3 is None:
             raise MissingKey("density_kg_per_m3", code="mass_missing", item=f"beam {beam.name!r}")
+        for key in ("offset_first_m", "offset_second_m"):
+            if any(getattr(beam, key) or ()):
+                raise NotAllowed(key, getattr(beam, key), code="offset_with_gravity", item=f"beam {beam.name!r}")
     driven: dict[str, str] = {}
     for drive in case.drive:
         where = {"item": f"drive {drive.name!r}"}

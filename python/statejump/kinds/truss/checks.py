@@ -18,6 +18,7 @@ from statejump.kinds.truss.arrays import said
 from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
 from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.beam import rotated_nodes
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.references import vector, wrong_vectors
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -48,9 +49,13 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
 
 
 def _rotations(case: TrussSections) -> None:
-    """Check the supports of rotations and the moments of nodes: only beams rotate nodes."""
+    """Check the supports of rotations and the moments of nodes: only beams, rigid bodies and hinges rotate nodes."""
     dimension = case.truss.dimension
-    ends = {name for beam in case.beam for name in beam.nodes}
+    others = {name for hinge in case.hinge for name in hinge.nodes} | {rigid.master for rigid in case.rigid}
+    others |= {name for rigid in case.rigid if rigid.rotations for name in rigid.nodes}
+    # A support may prevent a rotation that no beam transmits; a moment there would have no effect.
+    ends = {"fixed_rotations": others | {name for beam in case.beam for name in beam.nodes},
+            "moment_N_m": others | rotated_nodes(case.beam, dimension)}
 
     def wrong(nodes: ItemColumns[Node]) -> np.ndarray:
         given = said(nodes, "moment_N_m")
@@ -61,7 +66,7 @@ def _rotations(case: TrussSections) -> None:
     for node in where_wrong(case.node, wrong):
         where: dict[str, Any] = {"item": f"node {node.name!r}", "nodes": (node.name,)}
         for key in ("fixed_rotations", "moment_N_m"):
-            if getattr(node, key) and node.name not in ends:
+            if getattr(node, key) and node.name not in ends[key]:
                 raise NotAllowed(key, getattr(node, key), code="node_without_rotation", **where)
         if dimension == 2 and set(node.fixed_rotations) - {"z"}:
             raise NotAllowed("fixed_rotations", node.fixed_rotations, code="planar_rotations", **where)

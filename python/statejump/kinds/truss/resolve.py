@@ -88,7 +88,7 @@ def _nodes(case: TrussSections, positions: np.ndarray) -> Nodes:
 def _rotations(case: TrussSections) -> dict[str, np.ndarray]:
     """Return supports of rotations and moments of the nodes."""
     count = len(case.node)
-    if not case.beam:
+    if not (case.beam or case.rigid or case.hinge):
         none = np.broadcast_to(0.0, (count, 3))
         return {"fixed_rotations": none != 0, "moment_N_m": none}
     clamped = np.stack([having(case.node, "fixed_rotations", axis) for axis in "xyz"], axis=1)

@@ -104,6 +104,7 @@ class JoinsNodes(Protocol):
     """Functions of a joint type that a truss uses."""
 
     section: ClassVar[str]
+    bends: ClassVar[bool]
 
     def joined(self, joints: Any) -> np.ndarray:
         """Return the pairs of nodes (k, 2) that the joints couple."""
@@ -152,10 +153,11 @@ class ResolvedTruss:
         return self.elements["spring"]
 
     def bending(self) -> tuple[str, str] | None:
-        """Return the section and the name of the first element that bends; None if none does."""
-        for element in self.element_types:
-            for name in self.elements[element.section].names if element.bends else ():
-                return element.section, name
+        """Return the section and the name of the first element or joint that rotates nodes; None if none does."""
+        parts = [(one, self.elements) for one in self.element_types] + [(one, self.joints) for one in self.types]
+        for part, arrays in parts:
+            for name in arrays[part.section].names if part.bends else ():
+                return part.section, name
         return None
 
     def with_elements(self, **changed: Any) -> ResolvedTruss:

@@ -2,7 +2,7 @@
 """Beams between two nodes, which they bend and rotate."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, nan
 from typing import Any, ClassVar
@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import References, column, distances, given_or, pairs, unit, values
+from statejump.kinds.truss.arrays import References, column, given_or, having, pairs, unit, values, vectors
 from statejump.kinds.truss.elements.beam_shapes import ECCENTRIC, SHAPES, Properties
 from statejump.kinds.truss.elements.protocol import BetweenNodes, EndsArrays, Lines
 from statejump.kinds.truss.joints.protocol import USER, ItemColumn
@@ -22,6 +22,7 @@ from statejump.schema.items import Item
 VIOLET = "#5D3A9B"
 GENERAL = "general"
 LARGEST_LENGTH_M = 1e6
+RELEASES = ("Fx", "Rx", "Ry", "Rz")  # in the order of the engine's flags
 SECTION_KEYS = ("cross_section_area_m2", "second_moments_of_area_m4", "torsion_constant_m4")
 
 
@@ -43,9 +44,16 @@ class Beam(Item):
         None, "-", 0, 1, "of the shape, for forces along y and z; general: none, rigid in shear", length=2)
     axis_y: list[float] | None = numbers(
         None, "-", -1e9, 1e9, "direction of y of the section, its part across the beam; in a plane to the left")
+    released_first: list[str] = texts(
+        [], "axial force Fx and moments Rx, Ry, Rz about axes of the section that the first end does not transmit",
+        RELEASES)
+    released_second: list[str] = texts([], "the same of the second end", RELEASES)
+    offset_first_m: list[float] | None = numbers(
+        None, "m", -1e6, 1e6, "from the first node to its end, as drawn: a rigid arm that rotates with the node; none")
+    offset_second_m: list[float] | None = numbers(None, "m", -1e6, 1e6, "the same at the second node; none")
     thermal_expansion_per_K: float = parameter(..., "1/K", -1e-3, 1e-3, USER)
     stress_free_length_m: float | None = parameter(
-        None, "m", 0, LARGEST_LENGTH_M, "at ΔT = 0; the distance of its nodes", above=True)
+        None, "m", 0, LARGEST_LENGTH_M, "at ΔT = 0; the distance of its ends", above=True)
     density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, 1e5, "for truss.gravity_m_per_s2", above=True)
     temperature_fraction: float = parameter(1.0, "-", -10, 10, "mean over the section, of its program's ΔT")
     program: str | None = text(None, "name of a [[program]]; the common [thermal]")
@@ -74,6 +82,10 @@ class Beams(EndsArrays):
     program: np.ndarray  # int
     gradient_per_m: np.ndarray  # (k, 2)
     gradient_program: np.ndarray  # int
+    offset_first_m: np.ndarray  # (k, 3)
+    offset_second_m: np.ndarray  # (k, 3)
+    released_first: np.ndarray  # (k, 4) bool, in the order of RELEASES
+    released_second: np.ndarray  # (k, 4) bool
 
     @property
     def axial_stiffness_N(self) -> np.ndarray:
@@ -113,10 +125,25 @@ def properties(item: Beam) -> Properties:
             made.shear_factors if made else (inf, inf)))
 
 
-def _axes_y(items: Sequence[Beam], nodes: np.ndarray, known: References) -> np.ndarray:
-    """Return unit vectors (k, 3) across the beams; zero for a given direction along its beam."""
-    position = known.position_m
-    along = unit(position[nodes[:, 1]] - position[nodes[:, 0]])
+def rotated_nodes(items: Iterable[Beam], dimension: int) -> set[str]:
+    """Return the names of the nodes that beams rotate: their ends transmit a moment, or have an offset."""
+    axes = {"Rz"} if dimension == 2 else {"Rx", "Ry", "Rz"}
+    found = set()
+    for item in items:
+        ends = set(item.released_first), set(item.released_second)
+        no_torsion = (ends[0] | ends[1]) & {"Rx"}  # a torsion released at one end acts on neither
+        for node, released, offset in zip(item.nodes, ends, (item.offset_first_m, item.offset_second_m)):
+            if axes - released - no_torsion or any(offset or ()):
+                found.add(node)
+    return found
+
+
+def _axes_y(items: Sequence[Beam], vectors_m: np.ndarray, known: References) -> np.ndarray:
+    """Return unit vectors (k, 3) across the beams; zero for a given direction along its beam.
+
+    :param vectors_m: from the first to the second ends (k, 3)
+    """
+    along = unit(vectors_m)
     found = np.zeros((len(items), 3))
     for index, given in enumerate(values(items, "axis_y")):
         if given is not None:
@@ -161,6 +188,7 @@ class BeamType(BetweenNodes[Beam, Beams]):
 
     def check_vectors(self, item: Beam, dimension: int) -> None:
         where = self.where(item.name)
+        self._check_ends(item, dimension)
         if dimension == 2:
             if item.axis_y is not None:
                 raise NotAllowed("axis_y", item.axis_y, code="planar_axis_y", **where)
@@ -173,6 +201,17 @@ class BeamType(BetweenNodes[Beam, Beams]):
             raise MissingKey("axis_y", code="axis_missing", **where)
         if item.shape == GENERAL and item.torsion_constant_m4 is None:
             raise MissingKey("torsion_constant_m4", code="beam_section_missing", **where)
+
+    def _check_ends(self, item: Beam, dimension: int) -> None:
+        where = self.where(item.name)
+        for end in ("first", "second"):
+            released = getattr(item, f"released_{end}")
+            if dimension == 2 and set(released) - {"Fx", "Rz"}:
+                raise NotAllowed(f"released_{end}", released, code="planar_releases", **where)
+            vector(f"offset_{end}_m", getattr(item, f"offset_{end}_m"), "m", dimension, False, **where)
+        for key, what in (("Fx", "axial force"), ("Rx", "torsion")):
+            if key in item.released_first and key in item.released_second:
+                raise NotAllowed("released_second", item.released_second, code="released_twice", released=what, **where)
 
     def check_keys(self, item: Beam) -> None:
         where = self.where(item.name)
@@ -206,6 +245,8 @@ class BeamType(BetweenNodes[Beam, Beams]):
 
     def derived(self, items: Sequence[Beam], known: References) -> dict[str, Any]:
         nodes = pairs(items, "nodes", known.node)
+        offsets = [vectors(items, f"offset_{end}_m", known.dimension) for end in ("first", "second")]
+        between = known.position_m[nodes[:, 1]] + offsets[1] - known.position_m[nodes[:, 0]] - offsets[0]
         sections = [properties(item) for item in items]
         young, poisson = column(items, "young_modulus_Pa"), column(items, "poisson_ratio")
         program, own = known.programs_of(items), known.program.of(items, "gradient_program")
@@ -221,14 +262,25 @@ class BeamType(BetweenNodes[Beam, Beams]):
             "second_moments_of_area_m4": of("second_moments_of_area_m4", 2),
             "torsion_constant_m4": of("torsion_constant_m4"),
             "shear_factors": of("shear_factors", 2),
-            "axis_y": _axes_y(items, nodes, known),
-            "stress_free_length_m": given_or(column(items, "stress_free_length_m"), distances(known.position_m, nodes)),
+            "axis_y": _axes_y(items, between, known),
+            "stress_free_length_m": given_or(
+                column(items, "stress_free_length_m"), np.linalg.norm(between, axis=1)),
+            "offset_first_m": offsets[0],
+            "offset_second_m": offsets[1],
+            **{key: np.stack([having(items, key, release) for release in RELEASES], axis=1)
+               for key in ("released_first", "released_second")},
             "gradient_per_m": np.array(gradients, dtype=float).reshape(len(items), 2),
             "gradient_program": np.where(own < 0, program, 1 + own),
         }
 
     def check_geometry(self, truss: ResolvedTruss, elements: Beams) -> None:
-        super().check_geometry(truss, elements)
+        between = truss.nodes.position_m[elements.nodes[:, 1]] - truss.nodes.position_m[elements.nodes[:, 0]]
+        lengths = np.linalg.norm(between + elements.offset_second_m - elements.offset_first_m, axis=1)
+        if (lengths == 0).any():
+            super().check_geometry(truss, elements)  # coincident nodes
+        for index in np.flatnonzero(lengths == 0)[:1]:
+            raise NotAllowed("offset_first_m", elements.offset_first_m[index].tolist(), code="coincident_ends",
+                             **self.where(elements.names[index]))
         for index in np.flatnonzero(~elements.axis_y.any(axis=1))[:1]:
             raise NotAllowed("axis_y", code="axis_along_beam", **self.where(elements.names[index]))
         ranges_K = truss.temperature_ranges_K

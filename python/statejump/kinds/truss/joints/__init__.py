@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from statejump.kinds.truss.joints.ball_joint import BALL_JOINT, BallJoint
+from statejump.kinds.truss.joints.hinge import HINGE, Hinge
 from statejump.kinds.truss.joints.iwan_joint import IWAN_JOINT, IwanJoint
 from statejump.kinds.truss.joints.latch_hinge import LATCH_HINGE, LatchHinge
 from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.joints.revolute import REVOLUTE, Revolute
+from statejump.kinds.truss.joints.rigid import RIGID, Rigid
 from statejump.kinds.truss.joints.slider import SLIDER, Slider
 from statejump.schema.fields import Section, definition, tables
 
 # In the order of results. To add a type, add it to this tuple and to the lists.
-JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_JOINT, BALL_JOINT)
+JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_JOINT, BALL_JOINT, RIGID, HINGE)
 
 
 @definition
@@ -27,3 +29,5 @@ class JointLists(Section):
     latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
     iwan_joint: list[IwanJoint] = tables(IwanJoint, "sections [[iwan_joint]]")
     ball_joint: list[BallJoint] = tables(BallJoint, "sections [[ball_joint]]")
+    rigid: list[Rigid] = tables(Rigid, "sections [[rigid]]")
+    hinge: list[Hinge] = tables(Hinge, "sections [[hinge]]")
