@@ -144,9 +144,13 @@ void check_constraint(const Constraint& constraint, const Model& model) {
 /// Whether joints constrain displacements linearly.
 bool has_ties(const Model& model) {
   return std::any_of(model.joints.begin(), model.joints.end(), [](const Joint& joint) {
-    return std::visit([]<class Type>(const Type& one) {
-      return requires(const Model& of) { one.ties(of); };
-    }, joint);
+    return std::visit(
+        []<class Type>(const Type& one) {
+          return requires(const Model& of) {
+            one.ties(of);
+          };
+        },
+        joint);
   });
 }
 

@@ -739,7 +739,7 @@ CODES: dict[str, Code] = {
     "nothing_to_scale": Code(cause="it has no value but 0 in this case: there is nothing to scale"),
     "hinge_apart": Code(cause="its nodes are {apart_m:g} m apart", remedy="put them at one position"),
     "hinge_sticking_missing": Code(cause="reduced.sticking = {sticking!r} needs it, the hinge has no stiffness"),
-    "released_twice": Code(cause="both ends release the {what}", remedy="release it at one end"),
+    "released_twice": Code(cause="both ends release the {released}", remedy="release it at one end"),
     "rigid_node_fixed": Code(cause="supports hold it and the master, so the force of its arm is not unique",
                              remedy="leave it out"),
     "rigid_node_repeated": Code(cause="must be different nodes other than the master"),

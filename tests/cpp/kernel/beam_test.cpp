@@ -106,16 +106,16 @@ void for_many_releases(Use&& use) {
     std::array<double, 2> roll;
     bool axial = true;
   };
-  const std::array<Case, 9> cases{{{{{{false, true, false}, {false, false, false}}}, {{0.5, 0.5}}},
-                                   {{{{false, false, true}, {false, false, false}}}, {{0.0, 1.0}}},
-                                   {{{{false, true, true}, {false, false, false}}}, {{0.0, 1.0}}},
-                                   {{{{false, false, false}, {true, true, true}}}, {{1.0, 0.0}}},
-                                   {{{{false, true, false}, {false, true, false}}}, {{0.3, 0.7}}},
-                                   {{{{false, true, false}, {false, false, true}}}, {{1.0, 0.0}}},
-                                   {{{{false, true, true}, {false, true, true}}}, {{0.5, 0.5}}},
-                                   {{{{true, true, true}, {false, true, true}}}, {{0.5, 0.5}}},
-                                   {{{{false, false, true}, {false, false, false}}}, {{0.0, 1.0}},
-                                    false}}};
+  const std::array<Case, 9> cases{
+      {{{{{false, true, false}, {false, false, false}}}, {{0.5, 0.5}}},
+       {{{{false, false, true}, {false, false, false}}}, {{0.0, 1.0}}},
+       {{{{false, true, true}, {false, false, false}}}, {{0.0, 1.0}}},
+       {{{{false, false, false}, {true, true, true}}}, {{1.0, 0.0}}},
+       {{{{false, true, false}, {false, true, false}}}, {{0.3, 0.7}}},
+       {{{{false, true, false}, {false, false, true}}}, {{1.0, 0.0}}},
+       {{{{false, true, true}, {false, true, true}}}, {{0.5, 0.5}}},
+       {{{{true, true, true}, {false, true, true}}}, {{0.5, 0.5}}},
+       {{{{false, false, true}, {false, false, false}}}, {{0.0, 1.0}}, false}}};
   std::mt19937 random(11);
   for (const Case& one : cases) {
     for (const bool shears : {false, true}) {
@@ -259,7 +259,7 @@ TEST(Beam, ReleasedEndsTransmitNoMoment) {
     }
     const bool is_bar = beam.released[0][0] && beam.released[1][1] && beam.released[1][2];
     if (!is_bar) return;
-    EXPECT_LT(force.segment<5>(1).norm() + force.tail<5>().norm(), 1e-12 * beam.axial);
+    EXPECT_LT(force.segment(1, 5).norm() + force.tail(5).norm(), 1e-12 * beam.axial);
     Ends other = ends;
     other.rotation[0] = rotation_of(Vector3(1.0, -2.0, 2.0)) * other.rotation[0];
     other.rotation[1] = rotation_of(Vector3(-2.5, 0.3, 1.0)) * other.rotation[1];
@@ -288,7 +288,7 @@ TEST(Beam, HingedEndHasTheStiffnessOfAProppedCantilever) {
       const double expected = 3.0 * beam.bending[k] / cube / (1.0 + 0.25 * phi);
       EXPECT_NEAR(tangent(row, row), expected, 1e-13 * beam.axial);
     }
-    EXPECT_LT(tangent.bottomRightCorner<2, 2>().norm(), 1e-13 * beam.axial);
+    EXPECT_LT(tangent.bottomRightCorner(2, 2).norm(), 1e-13 * beam.axial);
   }
 }
 

@@ -21,8 +21,7 @@ template <JointType... Types>
 using JointOf = std::variant<Types...>;
 
 /// The registry of joints. To add a type, change this list only.
-using Joint =
-    JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint, RigidArm, Hinge>;
+using Joint = JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint, RigidArm, Hinge>;
 
 inline const std::string& name_of(const Joint& joint) {
   return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);

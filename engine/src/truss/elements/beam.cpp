@@ -76,8 +76,9 @@ BeamStep step_at(const Beam& beam, const Beam::Frame& frame, const Vector3d& dra
   kernel::BeamState state;
   state.first = kernel::rotation_of(moved.rotations[0]);
   state.second = kernel::rotation_of(moved.rotations[1]);
-  const Vector3d apart = moved.places[1] - moved.places[0] +
-                         (swung(state.second, frame.offsets[1]) - swung(state.first, frame.offsets[0]));
+  const Vector3d apart =
+      moved.places[1] - moved.places[0] +
+      (swung(state.second, frame.offsets[1]) - swung(state.first, frame.offsets[0]));
   const detail::Lengths length =
       detail::lengths(drawn + (frame.offsets[1] - frame.offsets[0]), apart);
   const double change = beam.temperature_fraction * at.mean;
@@ -155,8 +156,7 @@ bool rotates(const Beam::Frame& frame, std::size_t end, const Node& node) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const auto which = static_cast<std::size_t>(axis);
     // A torsion released at one end acts on neither.
-    const bool is_released =
-        axis == 0 ? released[0][0] || released[1][0] : released[end][which];
+    const bool is_released = axis == 0 ? released[0][0] || released[1][0] : released[end][which];
     if (is_released) continue;
     for (int i = 0; i < node.rotations; ++i) {
       const double part = frame.beam.triad.col(axis).dot(node.rotation_directions.col(i));
@@ -172,8 +172,8 @@ struct Roll {
   bool by_axis_z;  ///< By axis z of the section, not by axis y.
 };
 
-/// Chooses as many ends as possible, and an axis that their released rotations do not tilt: released
-/// moments about z tilt axis y. An end that releases the torsion is the last choice.
+/// Chooses as many ends as possible, and an axis that their released rotations do not tilt:
+/// released moments about z tilt axis y. An end that releases the torsion is the last choice.
 Roll roll_of(const std::array<std::array<bool, 3>, 2>& released) {
   for (const bool with_torsion : {false, true}) {
     Roll best{{0.0, 0.0}, false};
@@ -229,8 +229,8 @@ std::span<const Parameter<Beam>> Beam::parameters() {
        &Beam::offset_first},
       {"offset_second_m", "offset of the second end", "m", Allowed::finite, "the case",
        &Beam::offset_second},
-      {"released_first", "axial force", "-", Allowed::flag, "the case",
-       &Beam::released_first_axial, 0, 4},
+      {"released_first", "axial force", "-", Allowed::flag, "the case", &Beam::released_first_axial,
+       0, 4},
       {"released_first", "moment about x", "-", Allowed::flag, "the case", &Beam::released_first_x,
        1, 4},
       {"released_first", "moment about y", "-", Allowed::flag, "the case", &Beam::released_first_y,
@@ -402,18 +402,20 @@ void Beam::describe(const Frame& frame, const ElementState& state, double* outpu
 void Beam::check_state(const Frame& frame, const ElementState& state) const {
   const BeamStep step = step_at(*this, frame, state);
   if (step.buckles()) {
-    throw kernel::OutOfRange(named(*this), "axial force", step.tension(),
-                             "above the buckling load of a beam with released ends [N]; use a larger "
-                             "section or a shorter beam");
+    throw kernel::OutOfRange(
+        named(*this), "axial force", step.tension(),
+        "above the buckling load of a beam with released ends [N]; use a larger "
+        "section or a shorter beam");
   }
   const double largest = step.largest_local_rotation();
   if (largest <= BeamStep::largest_rotation) return;
   const bool is_released = std::any_of(frame.beam.released.begin(), frame.beam.released.end(),
                                        [](const auto& end) { return end[1] || end[2]; });
   if (is_released) {
-    throw kernel::OutOfRange(named(*this), "rotation of a node relative to the beam", largest,
-                             "at most 1 rad, if the end also transmits a moment about another axis; "
-                             "use a hinge");
+    throw kernel::OutOfRange(
+        named(*this), "rotation of a node relative to the beam", largest,
+        "at most 1 rad, if the end also transmits a moment about another axis; "
+        "use a hinge");
   }
   throw kernel::OutOfRange(named(*this), "rotation of an end relative to the beam", largest,
                            "at most 1 rad; divide the beam into more beams");

@@ -127,9 +127,9 @@ class HingeWriter {
   /// @param stiffness derivative of the moment by the function
   void moment(const Gradient& of, double moment, double stiffness) {
     const Vector3d world = axes_ * of.value;
-    const Matrix3d by_relative =
-        axes_ * (moment * of.slope + stiffness * of.value * of.value.transpose()) *
-        axes_.transpose();
+    const Matrix3d by_relative = axes_ *
+                                 (moment * of.slope + stiffness * of.value * of.value.transpose()) *
+                                 axes_.transpose();
     torque_ += moment * world;
     by_relative_ += by_relative;
   }

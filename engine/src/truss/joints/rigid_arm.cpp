@@ -92,8 +92,8 @@ JointFrame RigidArm::frame(const Model& model) const {
   int last = 2;
   for (int k = 0; k < 3; ++k) {
     const Vector3d along = Vector3d::Unit(k);
-    const bool has_force = held[index(k)] && !is_constant(model.nodes[index(node)],
-                                                          model.nodes[index(master)], along);
+    const bool has_force =
+        held[index(k)] && !is_constant(model.nodes[index(node)], model.nodes[index(master)], along);
     axes.col(has_force ? frame.forces++ : last--) = along;
   }
   if (axes.determinant() < 0.0) axes.col(2) *= -1.0;

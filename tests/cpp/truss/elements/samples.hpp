@@ -90,11 +90,11 @@ inline Model sample(std::type_identity<Beam>) {
   // Ends with releases and offsets.
   const std::size_t plain = model.beams.size();
   for (std::size_t k = 0; k < 6; ++k) model.beams.push_back(model.beams[k % plain]);
-  model.beams[plain].name = "hinge about z";
-  model.beams[plain].released_second_z = true;
-  model.beams[plain + 1].name = "ball";
-  model.beams[plain + 1].released_first_x = true;
-  model.beams[plain + 1].released_first_y = model.beams[plain + 1].released_first_z = true;
+  model.beams[plain].name = "ball";
+  model.beams[plain].released_second_x = true;
+  model.beams[plain].released_second_y = model.beams[plain].released_second_z = true;
+  model.beams[plain + 1].name = "hinge about z";
+  model.beams[plain + 1].released_second_z = true;
   model.beams[plain + 2].name = "hinges about y and z";
   model.beams[plain + 2].released_first_y = model.beams[plain + 2].released_second_z = true;
   model.beams[plain + 3].name = "bar on arms";

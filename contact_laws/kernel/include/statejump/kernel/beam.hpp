@@ -74,8 +74,9 @@ class BeamStep {
     for (std::size_t i = 0; i < 2; ++i) ends[i] = rotations[i]->toRotationMatrix() * beam.triad;
     const Vector3 e1 = at.along / length_;
     const bool is_bar = is_free(0) && is_free(1);
-    const Vector3 mean = is_bar ? across(e1)
-                                : Vector3(beam.roll[0] * ends[0].col(1) + beam.roll[1] * ends[1].col(1));
+    const Vector3 mean =
+        is_bar ? across(e1)
+               : Vector3(beam.roll[0] * ends[0].col(1) + beam.roll[1] * ends[1].col(1));
     const Vector3 e3 = cross(e1, mean).normalized();
     frame_ << e1, cross(e3, e1), e3;
     for (std::size_t i = 0; i < 2; ++i) {

@@ -54,8 +54,8 @@ struct Beam {
     /// Both nodes, then their rotations, see rotation_site(); −1: the rotation of the node has no
     /// effect, because the end is released.
     std::array<int, 4> nodes;
-    std::array<double, 2> arms;               ///< Node::arm of both nodes [m].
-    std::array<Eigen::Vector3d, 2> offsets;   ///< From the nodes to the ends of the beam [m].
+    std::array<double, 2> arms;              ///< Node::arm of both nodes [m].
+    std::array<Eigen::Vector3d, 2> offsets;  ///< From the nodes to the ends of the beam [m].
     kernel::Beam beam;
     /// Whether `beam` has axis z of the section as axis 2, and −y as axis 3.
     bool swapped = false;

@@ -16,8 +16,8 @@ struct Constraint;
 ///
 /// **Kinematics.** R₁ and R₂ are the rotations of the nodes since the reference configuration, a
 /// the axis. The quaternion (w, v) of R₁ᵀR₂ satisfies v·t = 0 for the two directions t across the
-/// axis, and φ = 2 atan2(v·a, w) is the rotation of the second node against the first. Displacements
-/// of both nodes are equal by linear constraints.
+/// axis, and φ = 2 atan2(v·a, w) is the rotation of the second node against the first.
+/// Displacements of both nodes are equal by linear constraints.
 ///
 /// **Law.** The moment that resists the rotation φ is
 ///

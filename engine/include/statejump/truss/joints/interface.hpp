@@ -76,7 +76,8 @@ struct Trial {
   explicit Trial(const JointFrame& of) : frame(of) {}
 
   const JointFrame& frame;
-  std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Positions of its nodes, ΔT = 0 [m]; rotations: 0.
+  std::array<Eigen::Vector3d, most_joint_nodes>
+      drawn;  ///< Positions of its nodes, ΔT = 0 [m]; rotations: 0.
   std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
   std::array<double, most_joint_forces> force{};        ///< Its unknowns [N].
   const double* history = nullptr;          ///< Memory of the joint at the start of the step.

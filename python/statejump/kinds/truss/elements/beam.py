@@ -211,7 +211,7 @@ class BeamType(BetweenNodes[Beam, Beams]):
             vector(f"offset_{end}_m", getattr(item, f"offset_{end}_m"), "m", dimension, False, **where)
         for key, what in (("Fx", "axial force"), ("Rx", "torsion")):
             if key in item.released_first and key in item.released_second:
-                raise NotAllowed("released_second", item.released_second, code="released_twice", what=what, **where)
+                raise NotAllowed("released_second", item.released_second, code="released_twice", released=what, **where)
 
     def check_keys(self, item: Beam) -> None:
         where = self.where(item.name)
