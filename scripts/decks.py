@@ -64,18 +64,17 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
     from statejump.kinds.truss.importing import SYSTEMS, Options, case_document, read
     from statejump.kinds.truss.importing.reading import form_of
 
-    row, beams = Row(name), False
+    row = Row(name)
     try:
         deck = read(path, None, None, Options(frozenset(word.upper().lstrip("*") for word in options.ignore),
                                               options.beams_as_bars, options.step, options.circ))
         documents = {units: case_document(deck, "deck", units=SYSTEMS[units], check_ignored=False,
                                           temperature_change_K=options.temperature_change)
                      for units in ([options.units] if options.units else SYSTEMS)}
-        beams = any(bar.bends for bar in deck.bars)
         row.units, made, case, without_support = _plausible(documents)
         row.imported = True
         if without_support:
-            row.cause = without_support
+            row.cause = str(without_support)
             return row
         row.largest_m = float(np.abs(_displacements(case.reduced())).max())  # type: ignore[attr-defined]
         row.ran = True
@@ -83,15 +82,13 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
             row.difference = _difference(path, deck, made, SYSTEMS[row.units].length_m)
     except StatejumpError as refused:
         row.cause = str(refused).replace(str(path), path.name)
-        if row.imported and beams and any(said in row.cause for said in ("mechanism", "stiffness is singular")):
-            row.cause = f"needs bending: {row.cause}"
     except Exception as fault:  # what the table is made to find
         row.fault = True
         row.cause = f"{FAULT}: {type(fault).__name__}: {fault}; {traceback.extract_tb(fault.__traceback__)[-1]}"
     return row
 
 
-def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object, str | None]:
+def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object, object]:
     """Return units, document, case and failure of a deck. A deck does not state its units: of the unit systems that
     give a case, the one with the fewest implausible numbers is chosen."""
     import statejump as sj

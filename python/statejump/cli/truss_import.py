@@ -173,7 +173,8 @@ def import_command(
     unsupported = [without_support] if without_support else []
     for hint in (*unsupported, *hints(document), *case.implausible):
         console.print(f"hint: {hint}")
-    console.print(f"{output}: nodes {len(document['node'])}, links {len(document.get('link', ()))}, joints "
+    console.print(f"{output}: nodes {len(document['node'])}, links {len(document.get('link', ()))}, "
+                  f"beams {len(document.get('beam', ()))}, joints "
                   f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "
                   f"{'planar' if case['truss.dimension'] == 2 else 'spatial'}")
 

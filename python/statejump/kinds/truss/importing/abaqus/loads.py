@@ -35,11 +35,13 @@ class State:
     """Supports and loads at the end of a step.
 
     :param held: held directions of each node
+    :param turned: held directions of rotation of each node, 4 to 6
     :param force: force by node and direction, with its line
     :param gravity: vector by set of elements, with its line
     """
 
     held: dict[str, set[int]] = field(default_factory=dict)
+    turned: dict[str, set[int]] = field(default_factory=dict)
     force: dict[tuple[str, int], tuple[float, int]] = field(default_factory=dict)
     gravity: dict[str, tuple[np.ndarray, int]] = field(default_factory=dict)
     temperature: dict[str, float] = field(default_factory=dict)
@@ -143,6 +145,7 @@ def _clear(state: State, name: str) -> None:
     """Remove supports or loads that earlier steps set by a keyword."""
     if name == "BOUNDARY":
         state.held.clear()
+        state.turned.clear()
     elif name == "CLOAD":
         state.force.clear()
     elif name == "DLOAD":
@@ -187,10 +190,17 @@ def _boundary(model: Model, block: Block, scope: Scope, state: State) -> None:
             last = model.whole(line, words[2]) if len(words) > 2 and words[2] else first
         if first == 0:
             raise model.deck.fail(line, "deck_incomplete", "*BOUNDARY", needed="a direction")
-        if len(words) > 3 and words[3] and model.number(line, words[3]) != 0 and first <= 3:
+        if len(words) > 3 and words[3] and model.number(line, words[3]) != 0 and (
+                first <= 3 or first <= 6 and model.bends()):
             model.deck.refuse("*BOUNDARY", "prescribed_displacement", line, "BOUNDARY.VALUE")
             continue
-        if last > 3:
+        if model.bends():
+            turns = range(max(first, 4), min(last, 6) + 1)
+            for node in nodes:
+                state.turned.setdefault(node, set()).update(turns)
+            if turns:
+                model.deck.take("*BOUNDARY", "directions without rotation, where beams end", len(nodes))
+        elif last > 3:
             model.deck.leave("*BOUNDARY", "directions above 3: ends of bars turn freely, temperatures are no supports",
                              line)
         directions = range(first, min(last, 3) + 1)
@@ -258,6 +268,10 @@ def _finish(model: Model, state: State) -> None:
                 deck.hold(node, axes[at - 1])
         else:
             deck.fix(node, "".join("xyz"[at - 1] for at in sorted(directions)))
+    for node, directions in state.turned.items():
+        axes = model.frame(node).directions(deck.nodes[node])
+        for at in sorted(directions):
+            deck.hold_rotation(node, axes[at - 4])
     for (node, direction), (value, line) in state.force.items():
         axis = model.frame(node).directions(deck.nodes[node])[(direction - 1) % 3]
         if value and direction > 3:
