@@ -199,6 +199,25 @@ def test_beam_of_three_nodes_becomes_two(axis: int, tip: float, tmp_path: Path) 
     assert abs(moved(document, "N3")[axis - 1]) == pytest.approx(tip, rel=2e-4)  # with the shear of the section
 
 
+@pytest.mark.parametrize("load, tip", [
+    ("B, P1, 100.", (0, 0.01 * 100 / (8 * 0.01 * 0.02**3 / 12), 0)),  # along n1, on the width along n2
+    ("B, P2, 100.", (0, 0, 0.02 * 100 / (8 * 0.02 * 0.01**3 / 12))),
+    ("B, GRAV, .1, 0., 0., -1.", (0, 0, -0.1 * 7800 * 2e-4 / (8 * 0.02 * 0.01**3 / 12)))])
+def test_loads_along_beams_of_calculix(load: str, tip: tuple[float, float, float], tmp_path: Path) -> None:
+    """The tip of a cantilever under a uniform load q moves by q l^4/(8 E I); checked with CalculiX 2.20."""
+    text = INP.replace("*BEAM SECTION", "*DENSITY\n7800.\n*BEAM SECTION").replace(".3\n", "0.\n")
+    document = made(tmp_path, text + f"*DLOAD\n{load}\n*END STEP\n", "deck.inp")
+    wanted = np.array(tip) * LENGTH**4 / MODULUS
+    assert moved(document, "N3") == pytest.approx(wanted, rel=1e-3, abs=1e-2 * np.abs(wanted).max())
+
+
+def test_normal_gives_the_second_direction(tmp_path: Path) -> None:
+    text = INP.replace("0., 1., 0.\n*B", "0., 0., 1.\n*NORMAL\n1, 1, 0., 0., 1.\n1, 2, 0., 0., 1.\n*B")
+    beam = made(tmp_path, text + "*CLOAD\n3, 2, 1.\n*END STEP\n", "deck.inp")["beam"][0]
+    assert beam["axis_y"] == pytest.approx([0, 1, 0])
+    assert beam["second_moments_of_area_m4"] == pytest.approx([0.02 * 0.01**3 / 12, 0.01 * 0.02**3 / 12])
+
+
 def test_general_section_and_moment(tmp_path: Path) -> None:
     text = INP.replace("*BEAM SECTION, ELSET=B, MATERIAL=M, SECTION=RECT\n.02, .01\n0., 1., 0.\n",
                        "*BEAM GENERAL SECTION, ELSET=B, SECTION=GENERAL\n1.E-4, 1.E-8, 0., 4.E-8, 3.E-8\n0., 1., 0.\n"

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.kinds.truss.importing.bending import SOFT, Bending, Section, triad
+from statejump.kinds.truss.importing.bending import SOFT, Bending, Load, Section, nodal_loads, triad
 from statejump.kinds.truss.importing.model import Bar, Deck
 from statejump.kinds.truss.importing.supports import SAME, basis_of
 
@@ -91,6 +91,21 @@ def _between(bending: Bending, at: float) -> Section:
         mean(*(one.torsion for one in sections)),
         (mean(*(one.shear_factors[0] for one in sections)), mean(*(one.shear_factors[1] for one in sections))),
         mean(*(one.product for one in sections)), sections[0].eccentric)
+
+
+def bend_by_weight(deck: Deck) -> None:
+    """Add the moments with which the ends of beams move as under a weight along the beams. Their forces are half of the
+    weight at each end."""
+    for bar in deck.bars:
+        first, second = (np.array(deck.nodes[end]) for end in bar.nodes)
+        axes = triad(first, second, bar.bending.axis_y) if bar.bending else None
+        if axes is None or not bar.density or not bar.area:
+            continue
+        weight = np.array(deck.gravity) * bar.density * bar.area
+        found = nodal_loads(Load(0.0, 1.0, weight, weight), float(np.linalg.norm(second - first)), axes, (0.0, 0.0))
+        for node, moment in zip(bar.nodes, found[1::2]):
+            deck.turn(node, moment, True)
+    deck.take("gravity", "weights along beams: moments of their ends")
 
 
 def beam_keys(deck: Deck, of: Bar, length: float, peak: float) -> dict[str, Any]:

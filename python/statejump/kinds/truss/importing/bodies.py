@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from statejump.kinds.truss.importing.model import Deck, Equation, RigidBody
+from statejump.kinds.truss.importing.model import Deck, Equation, Moment, RigidBody
 from statejump.kinds.truss.importing.supports import ALONG, SAME, basis_of, held_directions, is_held
 
 # Nodes nearer than this fraction of the truss size coincide, because decks have eight digits.
@@ -25,7 +25,7 @@ def settle_bodies(deck: Deck) -> None:
     """Process moments, rigid bodies and equations, after supports, loads, bars and springs are read."""
     turning = Turning(deck)
     for moment in deck.moments:
-        turning.take(moment.line, moment.card, moment.node, moment.vector, moment.waiver)
+        turning.take(moment)
     if not (deck.rigid or deck.followers or deck.equations):
         return
     bodies = _Bodies(deck, turning)
@@ -108,12 +108,13 @@ class _Bodies:
         causes a moment on the body; under gravity, so does a mass."""
         deck = self.deck
         lever = np.subtract(self.places[gone], self.places[kept])
-        for lines, force in ((deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
-                             (deck.mass_line, deck.mass.get(gone, 0.0) * np.array(deck.gravity))):
+        for weight, lines, force in (
+                (False, deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
+                (True, deck.mass_line, deck.mass.get(gone, 0.0) * np.array(deck.gravity))):
             moment = np.cross(lever, force)
             if np.linalg.norm(moment) > ALONG * np.linalg.norm(lever) * np.linalg.norm(force):
                 line, card = lines.get(gone, (body.line, body.card))
-                self.turning.take(line, card, kept, moment, f"{card.lstrip('*')}.LEVER")
+                self.turning.take(Moment(line, card, kept, moment, f"{card.lstrip('*')}.LEVER", weight))
         _move(deck, kept, gone)
         del deck.nodes[gone]
         deck.leave(f"node {gone}", f"a rigid arm of node {kept}", 0)
@@ -149,8 +150,9 @@ def join(deck: Deck, one: Mapping[str, str]) -> None:
 
 def _move(deck: Deck, kept: str, gone: str) -> None:
     """Move force, moment and mass from one node to another."""
-    if (moment := deck.moment.pop(gone, None)) is not None:
-        deck.turn(kept, moment)
+    for weight, of in enumerate((deck.moment, deck.weight_moment)):
+        if (moment := of.pop(gone, None)) is not None:
+            deck.turn(kept, moment, bool(weight))
     if force := deck.force.pop(gone, None):
         deck.load(kept, force, *deck.force_line.pop(gone, (0, "force")))
     if mass := deck.mass.pop(gone, None):
@@ -334,15 +336,16 @@ class Turning:
             waiting += fresh
         return False
 
-    def take(self, line: int, card: str, node: str, moment: np.ndarray, waiver: str | None = None) -> None:
+    def take(self, given: Moment) -> None:
         """Take a moment on a beam, also through a rigid body. Omit a moment that moves no node; refuse a moment on a
         beam that becomes a bar, if it bends this beam."""
+        line, card, node, moment = given.line, given.card, given.node, given.vector
         if not np.any(moment):
             self.deck.leave(card, "it is 0", line)
         elif {node, *(one for body in self.bodies.get(node, ()) for one in body)} & self.bent:
-            self.deck.turn(node, moment)
+            self.deck.turn(node, moment, given.weight)
             self.deck.take(card, "moment")
         elif self.bends(node, moment):
-            self.deck.refuse(card, "bending_moment", line, waiver)
+            self.deck.refuse(card, "bending_moment", line, given.waiver)
         else:
             self.deck.leave(card, "a moment that only twists bars moves no node", line)

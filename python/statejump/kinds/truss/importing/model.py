@@ -83,6 +83,7 @@ class Moment:
     """A moment that acts on a node.
 
     :param waiver: argument of ``--ignore`` that omits the moment; None: the name of its card
+    :param weight: whether it is that of a mass times an acceleration, whose unit may not be that of forces
     """
 
     line: int
@@ -90,6 +91,7 @@ class Moment:
     node: str
     vector: np.ndarray
     waiver: str | None = None
+    weight: bool = False
 
 
 @dataclass(eq=False)
@@ -162,6 +164,8 @@ class Deck:
     :param held: directions in which a node does not move, in addition to the axes in ``fixed``
     :param held_rotations: directions about which a node does not rotate, unit vectors
     :param moment: moments of nodes at which beams end
+    :param weight_moment: moments of masses times accelerations
+    :param spread_weight: whether the weight of beams bends them between their nodes
     :param mass: lumped masses of nodes
     :param mass_scale: factor for all masses and densities
     :param gravity: acceleration vector of all masses
@@ -181,6 +185,8 @@ class Deck:
     held_rotations: dict[str, list[np.ndarray]] = field(default_factory=dict)
     force: dict[str, list[float]] = field(default_factory=dict)
     moment: dict[str, np.ndarray] = field(default_factory=dict)
+    weight_moment: dict[str, np.ndarray] = field(default_factory=dict)
+    spread_weight: bool = False
     force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # line and card of the first force of a node
     springs: list[Spring] = field(default_factory=list)
     moments: list[Moment] = field(default_factory=list)
@@ -296,9 +302,10 @@ class Deck:
         """Hold the rotation of a node about a direction, a unit vector."""
         self.held_rotations.setdefault(name, []).append(direction)
 
-    def turn(self, name: str, moment: np.ndarray) -> None:
+    def turn(self, name: str, moment: np.ndarray, weight: bool = False) -> None:
         """Add a moment on a node at which a beam ends."""
-        self.moment[name] = self.moment.get(name, np.zeros(3)) + moment
+        of = self.weight_moment if weight else self.moment
+        of[name] = of.get(name, np.zeros(3)) + moment
 
     def bent(self) -> set[str]:
         """Return the nodes at which beams end that bend."""

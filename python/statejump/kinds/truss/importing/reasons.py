@@ -43,6 +43,7 @@ REASONS: dict[str, str] = {
     "partial_coupling": "it couples some components only",
     "perturbation_step": "small loads on the loaded state of an earlier step",
     "prescribed_displacement": "a prescribed displacement that is not 0",
+    "pressure_on_section": "a pressure on a section that is no rectangle",
     "radius_or_diameter": "its one length is a radius in Abaqus, a diameter in CalculiX and FreeCAD",
     "released_end": "a released end of a beam",
     "released_bar": "both ends of its bar release the axial force",

@@ -10,7 +10,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
-from statejump.kinds.truss.importing.beams import beam_keys, rotations
+from statejump.kinds.truss.importing.beams import beam_keys, bend_by_weight, rotations
 from statejump.kinds.truss.importing.bodies import named_nodes
 from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
@@ -93,6 +93,8 @@ def case_document(
     :param check_ignored: whether to raise an error for an item of ``Options.ignored`` that matches nothing in the deck
     :raises StatejumpError: a link lacks a number, or a node does not exist
     """
+    if deck.spread_weight and any(deck.gravity):
+        bend_by_weight(deck)
     used = named_nodes(deck)
     _check_unused(deck, used)
     dimension = _dimension(deck, used)
@@ -281,9 +283,10 @@ def _node(deck: Deck, name: str, dimension: int, units: Units, bent: bool) -> di
         made["force_N"] = load
     if held := rotations(deck, name, bent):
         made["fixed_rotations"] = held
-    moment = deck.moment.get(name)
-    if moment is not None and np.any(moment):
-        made["moment_N_m"] = [in_units(float(value), units.force_N * units.length_m) for value in moment]
+    moment = deck.moment.get(name, np.zeros(3)) * (units.force_N * units.length_m)
+    moment = moment + deck.weight_moment.get(name, np.zeros(3)) * (units.mass * deck.mass_scale * units.length_m**2)
+    if np.any(moment):
+        made["moment_N_m"] = [float(f"{value:.15g}") for value in moment]
     if deck.mass.get(name):
         made["mass_kg"] = in_units(deck.mass[name], units.mass * deck.mass_scale)
     return made

@@ -13,7 +13,7 @@ from statejump.kinds.truss.importing.abaqus.keywords import Block, blocks
 from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, KEYWORDS
 from statejump.kinds.truss.importing.beams import PIECES, split_tapered
-from statejump.kinds.truss.importing.bending import Bending, triad
+from statejump.kinds.truss.importing.bending import Bending, Load, nodal_loads, triad
 from statejump.kinds.truss.importing.bending import Section as BeamSection
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card, Field
@@ -57,6 +57,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
         elif block.name in ("STEP", "STATIC", "END STEP"):
             deck.take(f"*{block.name}", KEYWORDS[block.name.replace(" ", "_")].what)
     deck.settle()
+    deck.spread_weight = True
     given = assembly.flat(model, taken)
     steps, own = _steps(given)
     for stage in STAGES:
@@ -162,6 +163,8 @@ def _bars(model: Model) -> None:
             else:
                 bar.why_no_area = bar.why_no_modulus = "no section names it"
             model.deck.bars.append(bar)
+            if bar.bending:
+                _press(model, bar, one, section)
         model.deck.take(card, "link" if one.family == BAR else "beam" if model.bends()
                         else "link: it carries axial force only, its bending is left out")
 
@@ -182,11 +185,28 @@ def _bend(model: Model, bar: Bar, section: Section, element: str, line: int) -> 
     bending = stations[0][1] if stations else section.bending
     if bending is None:
         return
-    axis = model.normals.get(element, np.array(section.axis_1))
+    axis = np.array(section.axis_1)
+    if element in model.normals:  # n2, to the right of which n1 and the beam follow
+        axis = np.cross(model.normals[element], second - first)
     if triad(first, second, axis) is None:
         raise model.deck.fail(line, "deck_bad_geometry", f"element {bar.name}",
                               problem="direction n1 of its section is along it")
     bar.bending = Bending(bending, axis, section.material.shear_modulus, stations)
+
+
+def _press(model: Model, bar: Bar, one: Element, section: Section | None) -> None:
+    """Load the ends of a beam so that they move as under the pressures on it. P1 acts along n1, P2 along n2."""
+    first, second = (np.array(model.deck.nodes[end]) for end in bar.nodes)
+    axes = triad(first, second, bar.bending.axis_y) if bar.bending else None
+    for side, kind in enumerate(("P1", "P2")):
+        value, line = model.pressures.get((one.name, kind), (0.0, 0))
+        if not value or axes is None or section is None:
+            continue
+        load = axes[1 + side] * value * section.widths[side]
+        found = nodal_loads(Load(0.0, 1.0, load, load), float(np.linalg.norm(second - first)), axes, (0.0, 0.0))
+        for node, force, moment in zip(bar.nodes, found[::2], found[1::2]):
+            model.deck.load(node, [float(part) for part in force], line, "*DLOAD")
+            model.deck.turn(node, moment)
 
 
 def _taper(model: Model, bar: Bar, section: Section) -> None:

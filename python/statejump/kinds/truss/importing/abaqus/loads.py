@@ -37,6 +37,7 @@ class State:
     :param held: held directions of each node
     :param turned: held directions of rotation of each node, 4 to 6
     :param force: force by node and direction, with its line
+    :param pressure: pressure on beams by element and side, with its line
     :param gravity: vector by set of elements, with its line
     """
 
@@ -44,6 +45,7 @@ class State:
     turned: dict[str, set[int]] = field(default_factory=dict)
     force: dict[tuple[str, int], tuple[float, int]] = field(default_factory=dict)
     gravity: dict[str, tuple[np.ndarray, int]] = field(default_factory=dict)
+    pressure: dict[tuple[str, str], tuple[float, int]] = field(default_factory=dict)
     temperature: dict[str, float] = field(default_factory=dict)
 
 
@@ -112,7 +114,7 @@ def _chosen(model: Model, steps: list[Step]) -> int:
 def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block], last: bool) -> None:
     """Apply a step. OP=NEW removes the state of earlier steps. A force replaces the force of an earlier step; forces of
     one step add up."""
-    if last and step.perturbation and (state.force or state.gravity or state.temperature):
+    if last and step.perturbation and (state.force or state.gravity or state.pressure or state.temperature):
         model.deck.refuse("*STEP, PERTURBATION", "perturbation_step", step.line,
                           "STEP.PERTURBATION")
     renewed: set[str] = set()
@@ -150,6 +152,7 @@ def _clear(state: State, name: str) -> None:
         state.force.clear()
     elif name == "DLOAD":
         state.gravity.clear()
+        state.pressure.clear()
     else:
         state.temperature.clear()
 
@@ -230,6 +233,16 @@ def _cload(model: Model, block: Block, scope: Scope, forces: dict[tuple[str, int
 def _dload(model: Model, block: Block, scope: Scope, state: State, factor: float) -> None:
     for line, words in block.data:
         kind = words[1].upper() if len(words) > 1 else ""
+        if kind in ("P1", "P2") and model.bends() and len(words) > 2:
+            value = model.number(line, words[2]) * factor
+            for one in model.elements_of(line, words[0], scope):
+                found = model.sections.get(one.name)
+                if one.family != BEAM or found is None or not found.widths[0]:
+                    model.deck.refuse(f"*DLOAD, {kind}", "pressure_on_section", line, f"DLOAD.{kind}")
+                    break
+                state.pressure[one.name, kind] = (value, line)
+            model.deck.take("*DLOAD", "pressure on beams: forces and moments of their ends")
+            continue
         if kind != "GRAV":
             model.deck.refuse(f"*DLOAD, {quoted(kind)[1:-1]}", "distributed_load", line,
                               f"DLOAD.{kind}")
@@ -261,6 +274,7 @@ def _finish(model: Model, state: State) -> None:
     """Write the supports and loads after the last applied step into the deck, in the basic coordinate system."""
     deck = model.deck
     deck.temperature.update(state.temperature)
+    model.pressures.update(state.pressure)
     for node, directions in state.held.items():
         if node in model.frames:
             axes = model.frames[node].directions(deck.nodes[node])

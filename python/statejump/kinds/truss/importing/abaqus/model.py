@@ -62,7 +62,7 @@ class Section:
 
     :param bending: its bending, for beams
     :param axis_1: direction n1 of a beam
-    :param why_no_bending: reason why the deck gives no bending
+    :param widths: of the sides on which the pressures P1 and P2 act; 0: unknown
     :param shape: shape of a section whose sizes are given at nodes; empty: the area is given directly
     """
 
@@ -72,7 +72,7 @@ class Section:
     shape: str = ""
     bending: BeamSection | None = None
     axis_1: tuple[float, float, float] = (0.0, 0.0, -1.0)
-    why_no_bending: str = ""
+    widths: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass
@@ -86,7 +86,8 @@ class Model:
     materials: dict[str, Material] = field(default_factory=dict)
     material: Material | None = None
     sections: dict[str, Section] = field(default_factory=dict)
-    normals: dict[str, np.ndarray] = field(default_factory=dict)  # of beams, *NORMAL
+    pressures: dict[tuple[str, str], tuple[float, int]] = field(default_factory=dict)  # by element and P1 or P2; line
+    normals: dict[str, np.ndarray] = field(default_factory=dict)  # direction n2 of beams, *NORMAL
     thickness: dict[str, tuple[float, float]] = field(default_factory=dict)  # of *NODAL THICKNESS
     frames: dict[str, Frame] = field(default_factory=dict)  # directions of supports and loads of nodes
     system: Frame = BASIC  # of positions

@@ -102,6 +102,8 @@ def section(model: Model, block: Block, scope: Scope) -> None:
         made = Section(profiles.calculix(shape, values), model.materials[name], why)
         if block.name == "BEAM SECTION":
             made.bending = profiles.calculix_section(shape, values)
+            if shape == "RECT" and values:
+                made.widths = (values[-1] if len(values) < 2 else values[1], values[0])
     if block.name == "BEAM SECTION":
         _orient(model, block, made, shape, values)
     _assign(model, block, scope, made)
@@ -157,7 +159,7 @@ def _orient(model: Model, block: Block, made: Section, shape: str, sizes: list[f
 
 
 def normal(model: Model, block: Block, scope: Scope) -> None:
-    """Read the direction n1 of beams at their nodes. A case has one direction for each beam."""
+    """Read the direction n2 of beams at their nodes. A case has one direction for each beam."""
     found: dict[str, np.ndarray] = {}
     for line, words in block.data:
         values = (model.numbers(line, words[2:5]) + [0.0] * 3)[:3]

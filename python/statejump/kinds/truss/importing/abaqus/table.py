@@ -54,7 +54,7 @@ KEYWORDS: dict[str, Card] = table(
     used("NODAL_THICKNESS", "sizes of RECT and CIRC at two nodes; the beam is divided into 8 uniform ones"),
     used("BEAM_GENERAL_SECTION", "section and material of SECTION=GENERAL", "ELSET SECTION DENSITY POISSON ZERO",
          idle={"POISSON": "strains across the beam"}),
-    used("NORMAL", "direction n1 of beams at their nodes, one for each beam"),
+    used("NORMAL", "direction n2 of beams at their nodes, one for each beam"),
     used("TRANSVERSE_SHEAR_STIFFNESS", "nothing without beams; else it is refused"),
     used("SPRING", "spring along its line or to the ground", "ELSET NONLINEAR ORIENTATION DEPENDENCIES "
          "COMPLEX_STIFFNESS RTOL", idle={"RTOL": SOLVE, "COMPLEX_STIFFNESS": DYNAMIC},
@@ -73,7 +73,8 @@ KEYWORDS: dict[str, Card] = table(
          idle={"REGION_TYPE CYCLIC_MODE": SOLVE},
          refused={"SUBMODEL STEP DATASET TIME_DELAY": TIME, "USER": USER, "FOLLOWER": "a load that turns",
                   "SECTOR LOAD_CASE OMEGA0": "loads of cyclic symmetry"}),
-    used("DLOAD", "gravity", "OP AMPLITUDE TIME_DELAY LOAD_CASE SECTOR SUBMODEL REGION_TYPE",
+    used("DLOAD", "gravity; P1 and P2 on beams with SECTION=RECT: forces and moments of both ends",
+         "OP AMPLITUDE TIME_DELAY LOAD_CASE SECTOR SUBMODEL REGION_TYPE",
          idle={"REGION_TYPE": SOLVE},
          refused={"TIME_DELAY SUBMODEL": TIME, "LOAD_CASE SECTOR": "loads of cyclic symmetry"}),
     used("TEMPERATURE", "temperature of links", "OP AMPLITUDE TIME_DELAY USER SUBMODEL STEP DATASET FILE BSTEP BINC "

@@ -171,11 +171,11 @@ def finish(reader: Reader) -> None:
         (_load_beam if reader.bars[name][1].bending else _load_bar)(reader, card, reader.bars[name][1], load)
     gravity, bent = np.array(deck.gravity), deck.bent()
     for card, node, mass, arm in reader.mass_arms:
-        moment_vector = np.cross(arm, mass * deck.mass_scale * gravity)
+        moment_vector = np.cross(arm, mass * gravity)
         if not reader.bends():
             deck.leave(card.name, "offset of a mass: nodes of a truss do not rotate", card.line)
         elif np.any(moment_vector):
-            deck.moments.append(Moment(card.line, card.name, node, moment_vector, "CONM2.X1-X3"))
+            deck.moments.append(Moment(card.line, card.name, node, moment_vector, "CONM2.X1-X3", True))
         elif node in bent:
             deck.take(card.name, "offset of a mass: no gravity acts on it")
 
