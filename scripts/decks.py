@@ -8,8 +8,8 @@ The table has a row for each deck of Nastran, CalculiX or Abaqus: units, whether
 failure, largest displacement [m]. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of
 displacements between both programs, over the largest displacement. This comparison is linear: loads are multiplied by a
 small factor, and *STEP, NLGEOM is removed for CalculiX. Decks with beams are compared with a Poisson's ratio of 0.
-``--temperature-change`` sets ΔT for decks without temperatures. Every deck runs in a separate process. Exit status 1: an import or a run ended with neither a result nor a
-message.
+``--temperature-change`` sets ΔT for decks without temperatures. Every deck runs in a separate process. Exit status 1:
+an import or a run ended with neither a result nor a message.
 """
 from __future__ import annotations
 
@@ -36,8 +36,7 @@ SUFFIXES = (".inp", ".bdf", ".nas", ".dat")
 HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [m]", "difference to ccx")
 # Factor on loads. Strains are below 1e-2, so nonlinear parts are below 1e-7 of the displacement, the precision of ccx.
 SMALL = 1e-5
-# The solver does not converge if loads of beams are small against the rounding of rotations. The first factor with which
-# it converges is used.
+# The first factor with which the solver converges is used: small loads vanish in rounding of rotations.
 SMALL_OF_BEAMS = (1e-3, 1e-2, 1e-1, 1.0)
 FAULT = "fault"
 

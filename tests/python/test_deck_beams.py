@@ -73,6 +73,21 @@ def test_cantilever_bends_by_its_orientation(axis: str, force: tuple[int, int, i
     assert moved(document) @ np.array(force) == pytest.approx(tip, rel=1e-6)
 
 
+def test_loads_that_vanish_beside_the_stiffness_converge(tmp_path: Path) -> None:
+    """Two stout beams that meet at an angle: their rotations are near the rounding of 1."""
+    bulk = """GRID,1,,0.,0.,0.
+GRID,2,,10.,0.,0.
+GRID,3,,11.,1.,1.
+CBAR,1,1,1,2,1.,0.,1.
+CBAR,2,1,2,3,1.,0.,1.
+PBAR,1,1,1.,1.,1.,1.
+MAT1,1,3.+7,,.3
+SPC1,1,123456,1
+"""
+    tips = [moved(nastran(tmp_path, bulk + f"FORCE,5,3,,{size},1.,0.,0.\n"), "N3") / size for size in (1e4, 1e-4)]
+    assert tips[1] == pytest.approx(tips[0], rel=5e-2)
+
+
 def test_orientation_follows_the_system_of_the_first_node(tmp_path: Path) -> None:
     system = "CORD2R,9,,0.,0.,0.,1.,0.,0.,0.,1.,0.\n".replace("1.,0.,0.,0.,1.,0.", "1.,0.,0.\n,0.,1.,0.")
     bulk = BEAM.replace("GRID,1,,0.,0.,0.", "GRID,1,,0.,0.,0.,9") + system
