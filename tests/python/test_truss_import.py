@@ -11,7 +11,7 @@ from typing import Any, Callable
 import numpy as np
 import pytest
 from conftest import Outcome
-from failures import Failure, failing, failure
+from failures import Failure, failure
 
 import statejump as sj
 from statejump.kinds.truss.importing import Options, Units, case_document, read
