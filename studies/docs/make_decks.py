@@ -46,7 +46,8 @@ def page() -> str:
              *markdown(CONTROL, ("command",)),
              "", "## CalculiX and Abaqus: keywords", "", *markdown(KEYWORDS, ("keyword",)),
              "", "## CalculiX and Abaqus: types of elements", "",
-             "Beams need `--beams-as-bars`. A type that is not listed is not supported: " + ", ".join(kinds) + "."]
+             "Beams bend; with `--beams-as-bars` they become links. A type that is not listed is not supported: "
+             + ", ".join(kinds) + "."]
     return "\n".join(lines) + "\n"
 
 

@@ -171,7 +171,6 @@ def test_areas_of_beam_sections(name: str, tmp_path: Path) -> None:
         "1.e-4\n*B", f"{sizes}\n0., 1., 0.\n*B")
     link = made(tmp_path, text, beams_as_bars=True, **options)["link"][0]
     assert link["cross_section_area_m2"] == pytest.approx(area, rel=1e-12)
-    assert failure("deck_not_supported", reason="bending") == refusal(tmp_path, text, **options)
 
 
 def test_one_length_of_a_circle_is_asked_for(tmp_path: Path) -> None:

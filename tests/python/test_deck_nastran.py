@@ -248,7 +248,8 @@ AREAS = [  # shape, dimensions, area by hand
 
 @pytest.mark.parametrize("shape, sizes, area", AREAS, ids=[shape for shape, _, _ in AREAS])
 def test_areas_of_sections(shape: str, sizes: list[float], area: float, tmp_path: Path) -> None:
-    assert nastran(shape, sizes) == pytest.approx(area, rel=1e-12)
+    found = nastran(shape, sizes)
+    assert found is not None and found.area == pytest.approx(area, rel=1e-12)
     for card in ("PBARL", "PBEAML"):
         fields = ",".join(repr(float(size)) for size in sizes[:8])
         more = "".join(f"\n,{repr(float(size))}" if at == 0 else f",{repr(float(size))}" for at, size in enumerate(sizes[8:]))
@@ -516,7 +517,8 @@ def test_several_unsupported_cards_are_named_at_once(tmp_path: Path) -> None:
 
 
 BENT = {
-    "no option": ("CBAR,1,1,1,2,0.,1.,0.\n", {}, failure("deck_not_supported", card="CBAR", reason="bending", line=8)),
+    "released end": ("CBAR,1,1,1,2,0.,1.,0.\n,,6\n", {}, failure("deck_not_supported", card="CBAR.PB", reason="released_end", line=8)),
+    "offset of a beam": ("CBAR,1,1,1,2,0.,1.,0.\n,,,0.,.1,0.,0.,.1,0.\n", {}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="offset")),
     "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,7\n", {"beams_as_bars": True}, failure("deck_bad_number", text="'7'", line=8)),
     "load on a loose bar": ("CBAR,1,1,1,2,0.,1.,0.\n,1,1\nPLOAD1,5,1,FX,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="PLOAD1", reason="released_bar")),
     "offset": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.5,0.,0.,.5,.1,0.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="unequal_offsets")),

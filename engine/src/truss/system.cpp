@@ -120,7 +120,17 @@ double System::reach(const VectorXd& z) const {
 }
 
 double System::force_rounding(const VectorXd& z) const {
-  return 64.0 * std::numeric_limits<double>::epsilon() * stiffness_scale_ * reach(z);
+  // Rotations of nodes are those of matrices, whose entries are rounded as 1 is.
+  double turning = 0.0;
+  each_element_type([&](const auto& elements, const auto&, std::size_t) {
+    for (const auto& one : elements) {
+      if constexpr (requires { one.bending_stiffness_y; }) {  // 12 E I/l²: force by a rotation
+        const double bending = 12.0 * std::max(one.bending_stiffness_y, one.bending_stiffness_z);
+        turning = std::max(turning, bending / (one.stress_free_length * one.stress_free_length));
+      }
+    }
+  });
+  return 64.0 * std::numeric_limits<double>::epsilon() * (stiffness_scale_ * reach(z) + turning);
 }
 
 namespace {

@@ -173,7 +173,8 @@ def import_command(
     unsupported = [without_support] if without_support else []
     for hint in (*unsupported, *hints(document), *case.implausible):
         console.print(f"hint: {hint}")
-    console.print(f"{output}: nodes {len(document['node'])}, links {len(document.get('link', ()))}, joints "
+    beams = f"beams {len(document['beam'])}, " if "beam" in document else ""
+    console.print(f"{output}: nodes {len(document['node'])}, links {len(document.get('link', ()))}, {beams}joints "
                   f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "
                   f"{'planar' if case['truss.dimension'] == 2 else 'spatial'}")
 

@@ -49,7 +49,7 @@ class Rectangle:
         return self.along_y * self.along_z
 
 
-def _moments(parts: Sequence[Rectangle]) -> tuple[float, float, float, float]:
+def moments(parts: Sequence[Rectangle]) -> tuple[float, float, float, float]:
     """Return area, second moments about y and z, and product moment of rectangles, about their centroid. A rectangle
     with a negative side along z is a hole."""
     area = sum(part.area for part in parts)
@@ -83,13 +83,13 @@ def _tube(diameter: float, wall: float) -> Properties:
 
 
 def _rectangle(height: float, width: float) -> Properties:
-    area, about_y, about_z, _ = _moments([Rectangle(height, width)])
+    area, about_y, about_z, _ = moments([Rectangle(height, width)])
     return Properties(area, (about_y, about_z), solid_torsion_m4(height, width), (5 / 6, 5 / 6))
 
 
 def _box(height: float, width: float, wall: float) -> Properties:
     inner = height - 2 * wall, width - 2 * wall
-    area, about_y, about_z, _ = _moments([Rectangle(height, width), Rectangle(inner[0], -inner[1])])
+    area, about_y, about_z, _ = moments([Rectangle(height, width), Rectangle(inner[0], -inner[1])])
     # The hole has a negative area; its second moment about y has the sign of its area.
     enclosed, around = (height - wall) * (width - wall), 2 * (height + width - 2 * wall)
     return Properties(area, (about_y, about_z), 4 * enclosed**2 * wall / around,
@@ -98,7 +98,7 @@ def _box(height: float, width: float, wall: float) -> Properties:
 
 def _open(parts: Sequence[Rectangle], along_y: float, along_z: float) -> Properties:
     """Return the properties of an open section of thin walls, with its walls' areas along y and z."""
-    area, about_y, about_z, _ = _moments(parts)
+    area, about_y, about_z, _ = moments(parts)
     torsion = sum(max(part.along_y, part.along_z) * min(part.along_y, part.along_z) ** 3 for part in parts) / 3
     return Properties(area, (about_y, about_z), torsion, (along_y / area, along_z / area))
 
@@ -123,7 +123,7 @@ def _t(height: float, width: float, web: float, flange: float) -> Properties:
 
 def _angle(leg: float, wall: float) -> Properties:
     parts = [Rectangle(wall, leg, wall / 2, leg / 2), Rectangle(leg - wall, wall, (leg + wall) / 2, wall / 2)]
-    area, about_one, _, product = _moments(parts)
+    area, about_one, _, product = moments(parts)
     # The principal axes are at 45° to the legs; y is the axis of symmetry, about which the moment is larger.
     torsion = (2 * leg - wall) * wall**3 / 3
     return Properties(area, (about_one + abs(product), about_one - abs(product)), torsion,

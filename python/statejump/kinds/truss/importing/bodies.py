@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from statejump.kinds.truss.importing.model import Deck, Equation, RigidBody
+from statejump.kinds.truss.importing.model import Deck, Equation, Moment, RigidBody
 from statejump.kinds.truss.importing.supports import ALONG, SAME, basis_of, held_directions, is_held
 
 # Nodes nearer than this fraction of the truss size coincide, because decks have eight digits.
@@ -25,7 +25,7 @@ def settle_bodies(deck: Deck) -> None:
     """Process moments, rigid bodies and equations, after supports, loads, bars and springs are read."""
     turning = Turning(deck)
     for moment in deck.moments:
-        turning.take(moment.line, moment.card, moment.node, moment.vector, moment.waiver)
+        turning.take(moment)
     if not (deck.rigid or deck.followers or deck.equations):
         return
     bodies = _Bodies(deck, turning)
@@ -52,7 +52,7 @@ class _Bodies:
 
     def __init__(self, deck: Deck, turning: Turning) -> None:
         self.deck, self.turning = deck, turning
-        self.places = dict(deck.nodes)
+        self.places, self.bent = dict(deck.nodes), deck.bent()
         self.size = float(np.ptp(np.array(list(deck.nodes.values())), axis=0).max()) if deck.nodes else 0.0
         self.one: dict[str, str] = {}  # nodes that were merged into another one
 
@@ -75,6 +75,7 @@ class _Bodies:
             for node in body.nodes:
                 whole.nodes += joined[node].nodes if node in joined else [node]
             whole.nodes = list(dict.fromkeys(whole.nodes))
+            whole.pinned = body.pinned or any(joined[node].pinned for node in body.nodes if node in joined)
             joined.update({node: whole for node in whole.nodes})
         return list({id(body): body for body in joined.values()}.values())
 
@@ -87,9 +88,12 @@ class _Bodies:
         kept = borne[0]
         others = [node for node in body.nodes if node != kept]
         far = [node for node in others if not self.near(kept, node)]
-        if set(far) & ends:
+        if body.pinned and (len(self.bent & set(body.nodes)) > 1 or far and self.bent & set(body.nodes)):
+            deck.refuse(body.card, "hinge", body.line)
+        elif set(far) & ends:
             deck.refuse(body.card, "separate_rigid_nodes", body.line)
-        elif any(len(held_directions(deck, node)) for node in far):
+        elif any(len(held_directions(deck, node)) or self.bent & set(body.nodes) and deck.held_rotations.get(node)
+                 for node in far):
             deck.refuse(body.card, "support_off_bar_ends", body.line)
         elif any(of.get(kept) != of.get(node) for node in borne for of in (deck.temperature, deck.initial)):
             deck.refuse(body.card, "unequal_temperatures", body.line)
@@ -104,12 +108,13 @@ class _Bodies:
         causes a moment on the body; under gravity, so does a mass."""
         deck = self.deck
         lever = np.subtract(self.places[gone], self.places[kept])
-        for lines, force in ((deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
-                             (deck.mass_line, deck.mass.get(gone, 0.0) * np.array(deck.gravity))):
+        for weight, lines, force in (
+                (False, deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
+                (True, deck.mass_line, deck.mass.get(gone, 0.0) * np.array(deck.gravity))):
             moment = np.cross(lever, force)
             if np.linalg.norm(moment) > ALONG * np.linalg.norm(lever) * np.linalg.norm(force):
                 line, card = lines.get(gone, (body.line, body.card))
-                self.turning.take(line, card, kept, moment, f"{card.lstrip('*')}.LEVER")
+                self.turning.take(Moment(line, card, kept, moment, f"{card.lstrip('*')}.LEVER", weight))
         _move(deck, kept, gone)
         del deck.nodes[gone]
         deck.leave(f"node {gone}", f"a rigid arm of node {kept}", 0)
@@ -136,13 +141,18 @@ def join(deck: Deck, one: Mapping[str, str]) -> None:
         deck.fix(kept, "".join(deck.fixed.pop(gone, ())))
         for direction in deck.held.pop(gone, ()):
             deck.hold(kept, direction)
+        for axis in deck.held_rotations.pop(gone, ()):
+            deck.hold_rotation(kept, axis)
         _move(deck, kept, gone)
         del deck.nodes[gone]
         deck.leave(f"node {gone}", f"it is one with node {kept}", 0)
 
 
 def _move(deck: Deck, kept: str, gone: str) -> None:
-    """Move force and mass from one node to another."""
+    """Move force, moment and mass from one node to another."""
+    for weight, of in enumerate((deck.moment, deck.weight_moment)):
+        if (moment := of.pop(gone, None)) is not None:
+            deck.turn(kept, moment, bool(weight))
     if force := deck.force.pop(gone, None):
         deck.load(kept, force, *deck.force_line.pop(gone, (0, "force")))
     if mass := deck.mass.pop(gone, None):
@@ -235,14 +245,15 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
     for one in equations:
         if pair := _equal(one):
             pairs.setdefault((min(pair), max(pair)), []).append(one)
-    ends, found = carriers(deck), []
+    ends, bent, found = carriers(deck), deck.bent(), []
     joined: dict[str, str] = {}
     stays: set[str] = set()
     for pair, several in pairs.items():
         kept, gone = pair if pair[0] in ends else pair[::-1]
         # A node removed here must be in no other pair of this round, because remaining nodes are removed only later.
-        if kept not in ends or not near(kept, gone) or joined.keys() & {kept, gone} or gone in stays or \
-                any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
+        # Ends of two beams keep their own rotations.
+        if kept not in ends or {kept, gone} <= bent or not near(kept, gone) or joined.keys() & {kept, gone} or \
+                gone in stays or any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
             continue
         rows = [one.terms[0][1] for one in several]
         rows += [axis for axis in np.eye(3) if is_held(deck, kept, axis) and is_held(deck, gone, axis)]
@@ -297,7 +308,8 @@ class Turning:
         self.deck = deck
         self.beams: dict[str, list[str]] = {}
         self.bodies: dict[str, list[list[str]]] = {}
-        for first, second in (bar.nodes for bar in deck.bars if bar.bends):
+        self.bent = deck.bent()
+        for first, second in (bar.nodes for bar in deck.bars if bar.bends and not bar.bending):
             self.beams.setdefault(first, []).append(second)
             self.beams.setdefault(second, []).append(first)
         for body in deck.rigid:
@@ -324,11 +336,16 @@ class Turning:
             waiting += fresh
         return False
 
-    def take(self, line: int, card: str, node: str, moment: np.ndarray, waiver: str | None = None) -> None:
-        """Omit a moment that moves no node; refuse a moment that bends a beam."""
+    def take(self, given: Moment) -> None:
+        """Take a moment on a beam, also through a rigid body. Omit a moment that moves no node; refuse a moment on a
+        beam that becomes a bar, if it bends this beam."""
+        line, card, node, moment = given.line, given.card, given.node, given.vector
         if not np.any(moment):
             self.deck.leave(card, "it is 0", line)
+        elif {node, *(one for body in self.bodies.get(node, ()) for one in body)} & self.bent:
+            self.deck.turn(node, moment, given.weight)
+            self.deck.take(card, "moment")
         elif self.bends(node, moment):
-            self.deck.refuse(card, "bending_moment", line, waiver)
+            self.deck.refuse(card, "bending_moment", line, given.waiver)
         else:
             self.deck.leave(card, "a moment that only twists bars moves no node", line)

@@ -31,7 +31,6 @@ class Card:
     :param repeats: number of fields at the end of the card that may repeat
     :param sets: kind of set by which the case control selects it
     :param own: whether its reader locates the fields itself, because their positions depend on values
-    :param bending: whether the card requires the option --beams-as-bars
     """
 
     name: str
@@ -41,7 +40,6 @@ class Card:
     repeats: int = 0
     sets: str = ""
     own: bool = False
-    bending: bool = False
 
     def field(self, place: int) -> Field | None:
         """Return the field at a position after the name of the card; None if the card has no field there."""
@@ -56,8 +54,7 @@ class Card:
 
 
 def used(name: str, what: str, layout: str = "", *, idle: Mapping[str, str] | None = None,
-         refused: Mapping[str, str] | None = None, repeats: int = 0, sets: str = "", own: bool = False,
-         bending: bool = False) -> Card:
+         refused: Mapping[str, str] | None = None, repeats: int = 0, sets: str = "", own: bool = False) -> Card:
     """Declare a card that the import uses.
 
     :param layout: names of all fields in their order, separated by blanks
@@ -77,7 +74,7 @@ def used(name: str, what: str, layout: str = "", *, idle: Mapping[str, str] | No
         raise ValueError(f"{name} has two fields of one name")
     fields = tuple(Field(one, REFUSED, "must be empty") if one == BLANK else Field(one, *reasons.get(one, (USED,)))
                    for one in names)
-    return Card(name, USED, what, fields, repeats, sets, own, bending)
+    return Card(name, USED, what, fields, repeats, sets, own)
 
 
 def idle(names: str, why: str) -> Iterator[Card]:
@@ -110,7 +107,7 @@ def markdown(cards: Mapping[str, Card], heading: Sequence[str]) -> list[str]:
     shown = (USED, IDLE, REFUSED) if fields else ()
     lines = [f"| {' | '.join([heading[0], 'becomes', *shown])} |", "|---" * (2 + len(shown)) + "|"]
     for card in taken:
-        cells = [_code(card.name), card.what + ("; needs `--beams-as-bars`" if card.bending else "")]
+        cells = [_code(card.name), card.what]
         for use in shown:
             cells.append("; ".join(_by_reason(field for field in card.fields
                                               if field.use == use and field.name != BLANK)))

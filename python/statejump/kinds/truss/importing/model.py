@@ -12,12 +12,12 @@ import numpy as np
 from statejump.core.error_codes import CODES
 from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printable
 from statejump.core.tables import Shown
+from statejump.kinds.truss.importing.bending import Bending
 from statejump.kinds.truss.importing.lines import LARGEST_BYTES, text_of
 from statejump.kinds.truss.importing.reasons import REASONS, TABLE_REASON
 
 __all__ = ["LARGEST_BYTES", "Bar", "Deck", "Options", "Spring", "quoted", "text_of"]
 
-BENDING = "--beams-as-bars"
 MOST_SHOWN = 5  # further items in a refusal
 MOST_ITEMS = 1_000_000  # largest number of nodes, bars, and members of sets of a deck
 SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".csv": "tables",
@@ -26,14 +26,17 @@ SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nas
 
 @dataclass
 class Bar:
-    """An element that becomes a link. Numbers are in the units of the deck; None if the deck does not give them.
+    """An element that becomes a link or a beam. Numbers are in the units of the deck; None if the deck does not give
+    them.
 
     :param expansion_table: temperatures and secant coefficients of expansion, if these depend on temperature
     :param expansion_zero: reference temperature of the secant coefficients
     :param more_mass: mass per length in addition to that of the density
     :param why_no_area: reason why the deck gives no area for the bar
     :param why_no_modulus: reason why the deck gives no Young's modulus for the bar
-    :param bends: whether it is a beam whose bending is omitted
+    :param temperature: its own temperature, in place of the mean of its nodes
+    :param bends: whether it is a beam of the deck
+    :param bending: how it bends; None: it becomes a link
     :param lengthened: ratio of its length to the distance of its nodes, to which rigid ends connect it
     :param elongation: stress-free length minus the distance of its nodes, without rigid ends
     :param released: whether its first and its second end release the axial force
@@ -48,6 +51,7 @@ class Bar:
     poisson_ratio: float | None = None
     density: float | None = None
     reference_temperature: float | None = None
+    temperature: float | None = None
     temperature_change: float | None = None
     expansion_table: tuple[tuple[float, float], ...] = ()
     expansion_zero: float = 0.0
@@ -55,6 +59,7 @@ class Bar:
     why_no_area: str = ""
     why_no_modulus: str = ""
     bends: bool = False
+    bending: Bending | None = None
     lengthened: float = 1.0
     elongation: float = 0.0
     released: tuple[bool, bool] = (False, False)
@@ -62,11 +67,15 @@ class Bar:
 
 @dataclass
 class RigidBody:
-    """Nodes that move as one rigid body."""
+    """Nodes that move as one rigid body.
+
+    :param pinned: whether rotations of some of its nodes are free
+    """
 
     line: int
     card: str
     nodes: list[str]
+    pinned: bool = False
 
 
 @dataclass
@@ -74,6 +83,7 @@ class Moment:
     """A moment that acts on a node.
 
     :param waiver: argument of ``--ignore`` that omits the moment; None: the name of its card
+    :param weight: whether it is that of a mass times an acceleration, whose unit may not be that of forces
     """
 
     line: int
@@ -81,6 +91,7 @@ class Moment:
     node: str
     vector: np.ndarray
     waiver: str | None = None
+    weight: bool = False
 
 
 @dataclass(eq=False)
@@ -151,6 +162,10 @@ class Deck:
 
     :param temperature: temperature of nodes, on the scale of the deck
     :param held: directions in which a node does not move, in addition to the axes in ``fixed``
+    :param held_rotations: directions about which a node does not rotate, unit vectors
+    :param moment: moments of nodes at which beams end
+    :param weight_moment: moments of masses times accelerations
+    :param spread_weight: whether the weight of beams bends them between their nodes
     :param mass: lumped masses of nodes
     :param mass_scale: factor for all masses and densities
     :param gravity: acceleration vector of all masses
@@ -167,7 +182,11 @@ class Deck:
     bars: list[Bar] = field(default_factory=list)
     fixed: dict[str, set[str]] = field(default_factory=dict)
     held: dict[str, list[tuple[float, float, float]]] = field(default_factory=dict)
+    held_rotations: dict[str, list[np.ndarray]] = field(default_factory=dict)
     force: dict[str, list[float]] = field(default_factory=dict)
+    moment: dict[str, np.ndarray] = field(default_factory=dict)
+    weight_moment: dict[str, np.ndarray] = field(default_factory=dict)
+    spread_weight: bool = False
     force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # line and card of the first force of a node
     springs: list[Spring] = field(default_factory=list)
     moments: list[Moment] = field(default_factory=list)
@@ -226,8 +245,7 @@ class Deck:
         """Raise an error if unsupported cards were recorded. :raises StatejumpError: card, line and option"""
         if not self.refused:
             return
-        # Bending first, because the user must decide on it before other cards matter.
-        found = sorted(self.refused.items(), key=lambda item: (item[0][1] != BENDING, item[1][0]))
+        found = sorted(self.refused.items(), key=lambda item: item[1][0])
         (card, waiver), (line, reason, why, _) = found[0]
         shown = [f"{quoted(also)[1:-1]} (line {at})" for (also, _), (at, *_) in found[1:MOST_SHOWN + 1]]
         others = f"; also {', '.join(shown)}" if shown else ""
@@ -237,8 +255,7 @@ class Deck:
         raise StatejumpError(
             f"line {line}: {card} is not supported" if line else "", code="deck_not_supported", card=card,
             reason=reason, why=f"{why}{others}", line=line, file=self.path,
-            remedy=f"{waiver} takes it as a pin-jointed bar" if waiver == BENDING else f"{waiver} says which"
-            if waiver.startswith("--") else f"--ignore {_argument(waiver)} leaves it out")
+            remedy=f"{waiver} says which" if waiver.startswith("--") else f"--ignore {_argument(waiver)} leaves it out")
 
     def check_waived(self) -> None:
         """Raise an error for an argument of ``--ignore`` that matches nothing. :raises NotAllowed: there is one"""
@@ -280,6 +297,19 @@ class Deck:
                 self.fix(name, axis)
                 return
         self.held.setdefault(name, []).append((x, y, z))
+
+    def hold_rotation(self, name: str, direction: np.ndarray) -> None:
+        """Hold the rotation of a node about a direction, a unit vector."""
+        self.held_rotations.setdefault(name, []).append(direction)
+
+    def turn(self, name: str, moment: np.ndarray, weight: bool = False) -> None:
+        """Add a moment on a node at which a beam ends."""
+        of = self.weight_moment if weight else self.moment
+        of[name] = of.get(name, np.zeros(3)) + moment
+
+    def bent(self) -> set[str]:
+        """Return the nodes at which beams end that bend."""
+        return {end for bar in self.bars if bar.bending for end in bar.nodes}
 
     def load(self, name: str, force: Sequence[float], line: int = 0, card: str = "force") -> None:
         """Add a force on a node."""

@@ -22,14 +22,15 @@ def summary(made: Mapping[str, Any]) -> Shown:
     """Return sizes and ranges of an imported truss."""
     positions = _positions(made)
     size = np.ptp(np.array(list(positions.values())), axis=0)
-    links = made.get("link", ())
+    links = [*made.get("link", ()), *made.get("beam", ())]
     forces = [float(np.linalg.norm(node["force_N"])) for node in made["node"] if "force_N" in node]
     mass = sum(node.get("mass_kg", 0.0) for node in made["node"]) + sum(_mass(link, positions) for link in links)
     thermal = made["thermal"]
     rows = [
         ("bounding box [m]", " x ".join(f"{part:.6g}" for part in size)),
         ("nodes", str(len(positions))),
-        ("links", str(len(links))),
+        ("links", str(len(made.get("link", ())))),
+        *((("beams", str(len(made["beam"]))),) if made.get("beam") else ()),
         ("springs", str(len(made.get("spring", ())))),
         *((("constraints", str(len(made["constraint"]))),) if made.get("constraint") else ()),
         ("supported nodes", str(sum("fixed" in node or "guide_normal" in node for node in made["node"]
@@ -50,7 +51,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
 def hints(made: Mapping[str, Any]) -> list[str]:
     """Return hints that the units of a deck may be wrong, one sentence each."""
     positions = _positions(made)
-    links = made.get("link", ())
+    links = [*made.get("link", ()), *made.get("beam", ())]
     lengths = [_length(link, positions) for link in links]
     found = []
     checks: tuple[tuple[str, Sequence[float], float, float, str], ...] = (
@@ -88,7 +89,8 @@ def _mass(link: Mapping[str, Any], positions: Mapping[str, np.ndarray]) -> float
 
 
 def _coefficients(made: Mapping[str, Any]) -> list[float]:
-    return [link["thermal_expansion_per_K"] for link in made.get("link", ()) if "thermal_expansion_per_K" in link] + [
+    return [link["thermal_expansion_per_K"] for link in [*made.get("link", ()), *made.get("beam", ())]
+            if "thermal_expansion_per_K" in link] + [
         value for item in made.get("expansion", ()) for value in item["thermal_expansion_per_K"]]
 
 

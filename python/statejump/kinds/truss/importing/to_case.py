@@ -10,6 +10,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
+from statejump.kinds.truss.importing.beams import beam_keys, bend_by_weight, rotations
 from statejump.kinds.truss.importing.bodies import named_nodes
 from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
@@ -25,6 +26,7 @@ ROUNDING = 1e-12
 FAR, FARTHEST_M = 1e3, 9e5
 # Mass of a bar without density under gravity [kg]: cases need a mass, and this mass is negligible.
 WEIGHTLESS_KG = 1e-15
+WEIGHTLESS_KG_PER_M3 = 1e-12  # of a beam
 # Options that give all links a number that is missing in the deck.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
@@ -33,6 +35,9 @@ BEYOND_K = 1e3
 # Half the width of a jump, as a fraction of the range of the table. Beyond the jump, the strain error is the square of
 # this fraction. Narrower jumps need more solver steps.
 JUMP = 1e-3
+
+
+Member = tuple[Bar, dict[str, Any]]  # with its link or beam
 
 
 @dataclass(frozen=True)
@@ -88,30 +93,37 @@ def case_document(
     :param check_ignored: whether to raise an error for an item of ``Options.ignored`` that matches nothing in the deck
     :raises StatejumpError: a link lacks a number, or a node does not exist
     """
+    if deck.spread_weight and any(deck.gravity):
+        bend_by_weight(deck)
     used = named_nodes(deck)
     _check_unused(deck, used)
     dimension = _dimension(deck, used)
     more = dict(sections or {})
     changes = [0.0] * len(deck.bars) if "thermal" in more else _changes(deck, temperature_change_K)
     peak = max(changes, key=abs, default=temperature_change_K or 0.0)
+    if not peak and any(any(bar.bending.gradient) for bar in deck.bars if bar.bending):
+        peak = 1.0  # fractions give the links 0 K
     if any(deck.gravity) and density_kg_per_m3 is None and not deck.mass and not any(bar.density for bar in deck.bars):
         deck.leave("gravity", "nothing has a mass", 0)
         deck.gravity = [0.0, 0.0, 0.0]
     gravity = [in_units(part, units.length_m) for part in deck.gravity[:dimension]]
     truss: dict[str, Any] = {"dimension": dimension, **({"gravity_m_per_s2": gravity} if any(gravity) else {})}
+    members = [(bar, (_beam if bar.bending else _link)(deck, bar, change, peak, units, density_kg_per_m3, links or {}))
+               for bar, change in zip(deck.bars, changes)]
+    bent = deck.bent()
     made: Document = {
         "case": {"name": name, "kind": "truss", "title": "", "source": f"imported from {deck.path.name}"},
         "truss": truss,
-        "node": [_node(deck, node, dimension, units) for node in deck.nodes if node in used],
-        "link": [_link(deck, bar, change, peak, units, density_kg_per_m3, links or {})
-                 for bar, change in zip(deck.bars, changes)],
+        "node": [_node(deck, node, dimension, units, node in bent) for node in deck.nodes if node in used],
+        "link": [item for bar, item in members if not bar.bending],
+        "beam": [item for bar, item in members if bar.bending],
         "slider": [], "revolute": [], "spring": [], "expansion": [],
         "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)}, **more,
     }
     _springs(deck, made, units, dimension)
-    _expansions(deck, made)
+    _expansions(deck, made, members)
     made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
-    _leave_impossible(deck, made, heated=any(changes) or "thermal" in more, weighed=any(gravity))
+    _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity))
     deck.settle()
     if check_ignored:
         deck.check_waived()
@@ -150,6 +162,8 @@ def _check_unused(deck: Deck, used: set[str]) -> None:
 def _dimension(deck: Deck, used: set[str]) -> int:
     heights = [deck.nodes[node][2] for node in used]
     size = max((abs(value) for node in used for value in deck.nodes[node]), default=0.0)
+    if deck.bent():  # beams rotate out of the plane, where nothing holds them
+        return 3
     if (max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
             or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
             or any(abs(way[2]) > FLAT for one in deck.equations for _, way, _ in one.terms)):
@@ -186,11 +200,14 @@ def _constraint(name: str, equation: Equation) -> dict[str, Any]:
             "coefficients": list(terms.values())}
 
 
-def _expansions(deck: Deck, made: Document) -> None:
+def _expansions(deck: Deck, made: Document, members: Sequence[Member]) -> None:
     """Give links temperature-dependent coefficients: one [[expansion]] per table and stress-free temperature."""
     names: dict[tuple[tuple[tuple[float, float], ...], float, float], str] = {}
-    for bar, link in zip(deck.bars, made["link"]):
+    for bar, link in members:
         if not bar.expansion_table:
+            continue
+        if bar.bending:
+            deck.refuse(bar.kind, "thermal_table", 0, "EXPANSION")
             continue
         key = (bar.expansion_table, bar.expansion_zero, _free(deck, bar))
         if key not in names:
@@ -200,13 +217,13 @@ def _expansions(deck: Deck, made: Document) -> None:
         del link["thermal_expansion_per_K"]
 
 
-def _leave_impossible(deck: Deck, made: Document, *, heated: bool, weighed: bool) -> None:
+def _leave_impossible(deck: Deck, members: Sequence[Member], *, heated: bool, weighed: bool) -> None:
     """Omit numbers that are out of range and have no influence.
 
     Such numbers are expansion coefficients of an unheated truss, and densities without gravity. Some decks give 1 for
     both, others a weight instead of a mass.
     """
-    for bar, link in zip(deck.bars, made["link"]):
+    for bar, link in members:
         expansion, density = link.get("thermal_expansion_per_K", 0.0), link.get("density_kg_per_m3", 0.0)
         if not heated and abs(expansion) > MOST_EXPANSION_PER_K:
             deck.leave(bar.kind, f"a thermal expansion of {expansion:g} 1/K: no temperature acts on it", 0)
@@ -244,6 +261,8 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
     found = []
     for bar in deck.bars:
         change = bar.temperature_change
+        if change is None and bar.temperature is not None:
+            change = bar.temperature - _free(deck, bar)
         if change is None and deck.temperature:
             ends = [deck.temperature.get(end, deck.initial.get(end, 0.0)) for end in bar.nodes]
             change = sum(ends) / 2 - _free(deck, bar)
@@ -255,20 +274,42 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
     return found
 
 
-def _node(deck: Deck, name: str, dimension: int, units: Units) -> dict[str, Any]:
+def _node(deck: Deck, name: str, dimension: int, units: Units, bent: bool) -> dict[str, Any]:
     made: dict[str, Any] = {"name": node_name(name),
                             "position_m": [in_units(value, units.length_m) for value in deck.nodes[name][:dimension]]}
     made.update(supports(deck, name, dimension))
     load = [in_units(value, units.force_N) for value in deck.force.get(name, ())][:dimension]
     if any(load):
         made["force_N"] = load
+    if held := rotations(deck, name, bent):
+        made["fixed_rotations"] = held
+    moment = deck.moment.get(name, np.zeros(3)) * (units.force_N * units.length_m)
+    moment = moment + deck.weight_moment.get(name, np.zeros(3)) * (units.mass * deck.mass_scale * units.length_m**2)
+    if np.any(moment):
+        made["moment_N_m"] = [float(f"{value:.15g}") for value in moment]
     if deck.mass.get(name):
         made["mass_kg"] = in_units(deck.mass[name], units.mass * deck.mass_scale)
     return made
 
 
+def _beam(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
+          density: float | None, given: Mapping[str, float]) -> dict[str, Any]:
+    made = _member(deck, bar, "B", change, peak, units, density, given)
+    assert bar.bending is not None
+    if bar.bending.shear_modulus:
+        made["shear_modulus_Pa"] = in_units(bar.bending.shear_modulus, units.stress)
+    made.update(beam_keys(deck, bar, units.length_m, peak))
+    return made
+
+
 def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
           density: float | None, given: Mapping[str, float]) -> dict[str, Any]:
+    return _member(deck, bar, "L", change, peak, units, density, given)
+
+
+def _member(deck: Deck, bar: Bar, letter: str, change: float, peak: float, units: Units,
+            density: float | None, given: Mapping[str, float]) -> dict[str, Any]:
+    """Return what links and beams have in common."""
     numbers: dict[str, float] = {}
     for key, words, value, unit, why in (
             ("young_modulus_Pa", "Young's modulus", bar.young_modulus, units.stress, bar.why_no_modulus),
@@ -281,7 +322,7 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
             raise StatejumpError(code="bar_without_property", file=deck.path, cause=why or None, kind=bar.kind,
                                  name=bar.name, property=words, option=OPTIONS[key])
     made: dict[str, Any] = {
-        "name": _called("L", bar.name),
+        "name": _called(letter, bar.name),
         "nodes": [node_name(end) for end in bar.nodes],
         **numbers,
         "thermal_expansion_per_K": (given.get("thermal_expansion_per_K", 0.0) if bar.expansion is None
@@ -293,6 +334,9 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
         made["density_kg_per_m3"] = in_units(bar.density, units.mass / units.length_m**3 * deck.mass_scale)
     elif density is not None:
         made["density_kg_per_m3"] = density
+    elif any(deck.gravity) and bar.bending:
+        made["density_kg_per_m3"] = WEIGHTLESS_KG_PER_M3
+        deck.leave(bar.kind, f"no density: {WEIGHTLESS_KG_PER_M3:g} kg/m3 is taken, for gravity acts", 0)
     elif any(deck.gravity):
         made["mass_kg"] = WEIGHTLESS_KG
         deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, for gravity acts", 0)
@@ -305,7 +349,7 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
     if bar.elongation:
         distance = np.linalg.norm(np.subtract(deck.nodes[bar.nodes[1]], deck.nodes[bar.nodes[0]]))
         made["stress_free_length_m"] = in_units(float(distance) + bar.elongation, units.length_m)
-    if bar.poisson_ratio is not None:
+    if bar.poisson_ratio is not None and not (bar.bending and bar.bending.shear_modulus):
         made["poisson_ratio"] = bar.poisson_ratio
     if peak and change != peak:
         made["temperature_fraction"] = change / peak

@@ -12,6 +12,9 @@ from statejump.kinds.truss.importing.abaqus import assembly, generation, loads, 
 from statejump.kinds.truss.importing.abaqus.keywords import Block, blocks
 from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, KEYWORDS
+from statejump.kinds.truss.importing.beams import PIECES, split_tapered
+from statejump.kinds.truss.importing.bending import Bending, Load, nodal_loads, triad
+from statejump.kinds.truss.importing.bending import Section as BeamSection
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card, Field
 from statejump.kinds.truss.importing.model import Bar, Deck, Options
@@ -27,7 +30,8 @@ STAGES: tuple[dict[str, Reading], ...] = (
     {"MATERIAL": sections.material, "ELASTIC": sections.elastic, "EXPANSION": sections.expansion,
      "DENSITY": sections.density},
     {"SOLID SECTION": sections.section, "BEAM SECTION": sections.section, "BEAM GENERAL SECTION": sections.general,
-     "NODAL THICKNESS": sections.thickness,
+     "NODAL THICKNESS": sections.thickness, "NORMAL": sections.normal,
+     "TRANSVERSE SHEAR STIFFNESS": sections.shear_stiffness,
      "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
     # Read after the steps, because the result depends on supports.
     {"SPRING": sections.spring, "EQUATION": loads.equation},
@@ -53,6 +57,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
         elif block.name in ("STEP", "STATIC", "END STEP"):
             deck.take(f"*{block.name}", KEYWORDS[block.name.replace(" ", "_")].what)
     deck.settle()
+    deck.spread_weight = True
     given = assembly.flat(model, taken)
     steps, own = _steps(given)
     for stage in STAGES:
@@ -66,6 +71,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
                 stage[block.name](model, block, scope)
     _bars(model)
     settle_bodies(deck)
+    split_tapered(deck)
     deck.settle()
     return deck
 
@@ -150,13 +156,57 @@ def _bars(model: Model) -> None:
                 bar.area, bar.young_modulus, bar.expansion = section.area, of.young_modulus, of.expansion
                 bar.poisson_ratio, bar.density, bar.why_no_area = of.poisson_ratio, of.density, section.why
                 bar.expansion_table, bar.expansion_zero = of.expansion_table, of.expansion_zero
+                if one.family == BEAM and model.bends():
+                    _bend(model, bar, section, one.name, one.line)
                 if section.shape:
                     _taper(model, bar, section)
             else:
                 bar.why_no_area = bar.why_no_modulus = "no section names it"
             model.deck.bars.append(bar)
-        model.deck.take(card, "link" if one.family == BAR
+            if bar.bending:
+                _press(model, bar, one, section)
+        model.deck.take(card, "link" if one.family == BAR else "beam" if model.bends()
                         else "link: it carries axial force only, its bending is left out")
+
+
+def _bend(model: Model, bar: Bar, section: Section, element: str, line: int) -> None:
+    """Give a beam its bending."""
+    first, second = (np.array(model.deck.nodes[end]) for end in bar.nodes)
+    stations: tuple[tuple[float, BeamSection], ...] = ()
+    if section.shape:
+        sizes = [np.array(model.thickness.get(end, (0.0, 0.0))) for end in bar.nodes]
+        between = [(at, sizes[0] + (sizes[1] - sizes[0]) * at) for at in np.linspace(0, 1, 1 + 2 * PIECES)]
+        made = [(at, profiles.calculix_section(section.shape, [float(one) for one in of])) for at, of in between]
+        stations = tuple((float(at), one) for at, one in made if one is not None)
+        if len(stations) < len(made) or section.shape not in ("RECT", "CIRC"):
+            return  # its area is missing, which is reported
+        if all(one == stations[0][1] for _, one in stations):
+            stations = stations[:1]
+    bending = stations[0][1] if stations else section.bending
+    if bending is None:
+        return
+    axis = np.array(section.axis_1)
+    if element in model.normals:  # n2, to the right of which n1 and the beam follow
+        axis = np.cross(model.normals[element], second - first)
+    if triad(first, second, axis) is None:
+        raise model.deck.fail(line, "deck_bad_geometry", f"element {bar.name}",
+                              problem="direction n1 of its section is along it")
+    bar.bending = Bending(bending, axis, section.material.shear_modulus, stations)
+
+
+def _press(model: Model, bar: Bar, one: Element, section: Section | None) -> None:
+    """Load the ends of a beam so that they move as under the pressures on it. P1 acts along n1, P2 along n2."""
+    first, second = (np.array(model.deck.nodes[end]) for end in bar.nodes)
+    axes = triad(first, second, bar.bending.axis_y) if bar.bending else None
+    for side, kind in enumerate(("P1", "P2")):
+        value, line = model.pressures.get((one.name, kind), (0.0, 0))
+        if not value or axes is None or section is None:
+            continue
+        load = axes[1 + side] * value * section.widths[side]
+        found = nodal_loads(Load(0.0, 1.0, load, load), float(np.linalg.norm(second - first)), axes, (0.0, 0.0))
+        for node, force, moment in zip(bar.nodes, found[::2], found[1::2]):
+            model.deck.load(node, [float(part) for part in force], line, "*DLOAD")
+            model.deck.turn(node, moment)
 
 
 def _taper(model: Model, bar: Bar, section: Section) -> None:
@@ -171,6 +221,8 @@ def _taper(model: Model, bar: Bar, section: Section) -> None:
 def _splits(model: Model, one: Element, shared: Counter[str]) -> bool:
     """Return whether the middle node splits an element, because it is not just a point of a straight bar."""
     deck, middle = model.deck, one.nodes[1]
+    if one.family == BEAM and model.bends():
+        return True
     first, between, last = (np.array(deck.nodes[end]) for end in one.nodes)
     if shared[middle] > 1 or any(deck.force.get(middle, ())) or middle in deck.mass or \
             np.linalg.norm(between - (first + last) / 2) > MIDDLE * np.linalg.norm(last - first):

@@ -35,13 +35,17 @@ class State:
     """Supports and loads at the end of a step.
 
     :param held: held directions of each node
+    :param turned: held directions of rotation of each node, 4 to 6
     :param force: force by node and direction, with its line
+    :param pressure: pressure on beams by element and side, with its line
     :param gravity: vector by set of elements, with its line
     """
 
     held: dict[str, set[int]] = field(default_factory=dict)
+    turned: dict[str, set[int]] = field(default_factory=dict)
     force: dict[tuple[str, int], tuple[float, int]] = field(default_factory=dict)
     gravity: dict[str, tuple[np.ndarray, int]] = field(default_factory=dict)
+    pressure: dict[tuple[str, str], tuple[float, int]] = field(default_factory=dict)
     temperature: dict[str, float] = field(default_factory=dict)
 
 
@@ -110,7 +114,7 @@ def _chosen(model: Model, steps: list[Step]) -> int:
 def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block], last: bool) -> None:
     """Apply a step. OP=NEW removes the state of earlier steps. A force replaces the force of an earlier step; forces of
     one step add up."""
-    if last and step.perturbation and (state.force or state.gravity or state.temperature):
+    if last and step.perturbation and (state.force or state.gravity or state.pressure or state.temperature):
         model.deck.refuse("*STEP, PERTURBATION", "perturbation_step", step.line,
                           "STEP.PERTURBATION")
     renewed: set[str] = set()
@@ -143,10 +147,12 @@ def _clear(state: State, name: str) -> None:
     """Remove supports or loads that earlier steps set by a keyword."""
     if name == "BOUNDARY":
         state.held.clear()
+        state.turned.clear()
     elif name == "CLOAD":
         state.force.clear()
     elif name == "DLOAD":
         state.gravity.clear()
+        state.pressure.clear()
     else:
         state.temperature.clear()
 
@@ -187,10 +193,17 @@ def _boundary(model: Model, block: Block, scope: Scope, state: State) -> None:
             last = model.whole(line, words[2]) if len(words) > 2 and words[2] else first
         if first == 0:
             raise model.deck.fail(line, "deck_incomplete", "*BOUNDARY", needed="a direction")
-        if len(words) > 3 and words[3] and model.number(line, words[3]) != 0 and first <= 3:
+        if len(words) > 3 and words[3] and model.number(line, words[3]) != 0 and (
+                first <= 3 or first <= 6 and model.bends()):
             model.deck.refuse("*BOUNDARY", "prescribed_displacement", line, "BOUNDARY.VALUE")
             continue
-        if last > 3:
+        if model.bends():
+            turns = range(max(first, 4), min(last, 6) + 1)
+            for node in nodes:
+                state.turned.setdefault(node, set()).update(turns)
+            if turns:
+                model.deck.take("*BOUNDARY", "directions without rotation, where beams end", len(nodes))
+        elif last > 3:
             model.deck.leave("*BOUNDARY", "directions above 3: ends of bars turn freely, temperatures are no supports",
                              line)
         directions = range(first, min(last, 3) + 1)
@@ -220,6 +233,16 @@ def _cload(model: Model, block: Block, scope: Scope, forces: dict[tuple[str, int
 def _dload(model: Model, block: Block, scope: Scope, state: State, factor: float) -> None:
     for line, words in block.data:
         kind = words[1].upper() if len(words) > 1 else ""
+        if kind in ("P1", "P2") and model.bends() and len(words) > 2:
+            value = model.number(line, words[2]) * factor
+            for one in model.elements_of(line, words[0], scope):
+                found = model.sections.get(one.name)
+                if one.family != BEAM or found is None or not found.widths[0]:
+                    model.deck.refuse(f"*DLOAD, {kind}", "pressure_on_section", line, f"DLOAD.{kind}")
+                    break
+                state.pressure[one.name, kind] = (value, line)
+            model.deck.take("*DLOAD", "pressure on beams: forces and moments of their ends")
+            continue
         if kind != "GRAV":
             model.deck.refuse(f"*DLOAD, {quoted(kind)[1:-1]}", "distributed_load", line,
                               f"DLOAD.{kind}")
@@ -251,6 +274,7 @@ def _finish(model: Model, state: State) -> None:
     """Write the supports and loads after the last applied step into the deck, in the basic coordinate system."""
     deck = model.deck
     deck.temperature.update(state.temperature)
+    model.pressures.update(state.pressure)
     for node, directions in state.held.items():
         if node in model.frames:
             axes = model.frames[node].directions(deck.nodes[node])
@@ -258,6 +282,10 @@ def _finish(model: Model, state: State) -> None:
                 deck.hold(node, axes[at - 1])
         else:
             deck.fix(node, "".join("xyz"[at - 1] for at in sorted(directions)))
+    for node, directions in state.turned.items():
+        axes = model.frame(node).directions(deck.nodes[node])
+        for at in sorted(directions):
+            deck.hold_rotation(node, axes[at - 4])
     for (node, direction), (value, line) in state.force.items():
         axis = model.frame(node).directions(deck.nodes[node])[(direction - 1) % 3]
         if value and direction > 3:

@@ -8,9 +8,9 @@ import numpy as np
 
 from statejump.kinds.truss.importing.abaqus.keywords import Block
 from statejump.kinds.truss.importing.abaqus.model import Element, Model, Scope
-from statejump.kinds.truss.importing.abaqus.table import BEAM, ELEMENTS
+from statejump.kinds.truss.importing.abaqus.table import ELEMENTS
 from statejump.kinds.truss.importing.coordinates import BASIC, Frame, by_axis
-from statejump.kinds.truss.importing.model import BENDING, quoted
+from statejump.kinds.truss.importing.model import quoted
 
 # Number of nodes of an element that is no bar: the last number of its type, for example C3D20R.
 NODES = re.compile(r"[A-Z]+(?:3D|2D)?(\d+)[A-Z]*$")
@@ -117,8 +117,6 @@ def check_type(model: Model, block: Block) -> None:
     card = f"*ELEMENT, TYPE={quoted(kind)[1:-1]}"
     if known is None:
         model.deck.refuse(card, "not_a_straight_bar", block.line, kind)
-    elif known[0] == BEAM and not model.deck.options.beams_as_bars:
-        model.deck.refuse(card, "bending", block.line, BENDING)
 
 
 def node_set(model: Model, block: Block, scope: Scope) -> None:

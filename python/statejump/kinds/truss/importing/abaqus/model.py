@@ -10,6 +10,8 @@ import numpy as np
 
 from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.abaqus.keywords import Block
+from statejump.kinds.truss.importing.abaqus.table import BEAM
+from statejump.kinds.truss.importing.bending import Section as BeamSection
 from statejump.kinds.truss.importing.contract import Card
 from statejump.kinds.truss.importing.coordinates import BASIC, Frame
 from statejump.kinds.truss.importing.model import Deck, quoted
@@ -46,6 +48,7 @@ class Material:
     """Properties of a material; None: missing in the deck."""
 
     young_modulus: float | None = None
+    shear_modulus: float | None = None
     poisson_ratio: float | None = None
     expansion: float | None = None
     density: float | None = None
@@ -57,6 +60,9 @@ class Material:
 class Section:
     """Area and material of a bar.
 
+    :param bending: its bending, for beams
+    :param axis_1: direction n1 of a beam
+    :param widths: of the sides on which the pressures P1 and P2 act; 0: unknown
     :param shape: shape of a section whose sizes are given at nodes; empty: the area is given directly
     """
 
@@ -64,6 +70,9 @@ class Section:
     material: Material
     why: str = ""
     shape: str = ""
+    bending: BeamSection | None = None
+    axis_1: tuple[float, float, float] = (0.0, 0.0, -1.0)
+    widths: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass
@@ -77,11 +86,17 @@ class Model:
     materials: dict[str, Material] = field(default_factory=dict)
     material: Material | None = None
     sections: dict[str, Section] = field(default_factory=dict)
+    pressures: dict[tuple[str, str], tuple[float, int]] = field(default_factory=dict)  # by element and P1 or P2; line
+    normals: dict[str, np.ndarray] = field(default_factory=dict)  # direction n2 of beams, *NORMAL
     thickness: dict[str, tuple[float, float]] = field(default_factory=dict)  # of *NODAL THICKNESS
     frames: dict[str, Frame] = field(default_factory=dict)  # directions of supports and loads of nodes
     system: Frame = BASIC  # of positions
     set_items: int = 0
     sorted_numbers: dict[tuple[bool, str], tuple[int, list[int]]] = field(default_factory=dict)
+
+    def bends(self) -> bool:
+        """Return whether beams of the deck bend."""
+        return not self.deck.options.beams_as_bars and any(one.family == BEAM for one in self.elements.values())
 
     def number(self, line: int, text: str) -> float:
         """Return a number of a data line."""

@@ -8,8 +8,9 @@ from statejump.kinds.truss.importing import profiles
 from statejump.kinds.truss.importing.abaqus.keywords import Block
 from statejump.kinds.truss.importing.abaqus.model import Material, Model, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, MASS, SPRING
+from statejump.kinds.truss.importing.bending import Section as BeamSection
 from statejump.kinds.truss.importing.model import quoted
-from statejump.kinds.truss.importing.supports import add_spring
+from statejump.kinds.truss.importing.supports import ALONG, add_spring
 
 ISOTROPIC = ("", "ISO", "ISOTROPIC")
 
@@ -43,7 +44,9 @@ def elastic(model: Model, block: Block, scope: Scope) -> None:
         model.deck.refuse("*ELASTIC, TYPE", "anisotropic", block.line, "ELASTIC.TYPE")
         return
     if found := _of_material(model, block, 2):
-        found[0].young_modulus, ratio = found[1]
+        modulus, ratio = found[1]
+        found[0].young_modulus = modulus
+        found[0].shear_modulus = modulus / (2 * (1 + ratio)) if ratio > -1 else None
         if not -0.99 <= ratio <= 0.49:  # only the DEM's joints use it
             model.deck.leave("*ELASTIC", f"Poisson's ratio {ratio:g}: outside of -0.99 to 0.49", block.line)
         elif len(block.data[0][1]) > 1:
@@ -95,7 +98,14 @@ def section(model: Model, block: Block, scope: Scope) -> None:
     if "NODAL THICKNESS" in block.parameters:
         made = Section(None, model.materials[name], f"{why} of *NODAL THICKNESS", shape)
     else:
-        made = Section(_area(model, block, shape, values), model.materials[name], why)
+        values = _sizes(model, block, shape, values)
+        made = Section(profiles.calculix(shape, values), model.materials[name], why)
+        if block.name == "BEAM SECTION":
+            made.bending = profiles.calculix_section(shape, values)
+            if shape == "RECT" and values:
+                made.widths = (values[-1] if len(values) < 2 else values[1], values[0])
+    if block.name == "BEAM SECTION":
+        _orient(model, block, made, shape, values)
     _assign(model, block, scope, made)
 
 
@@ -117,16 +127,60 @@ def _assign(model: Model, block: Block, scope: Scope, made: Section) -> None:
     model.deck.take(f"*{block.name}", "cross-section area of links")
 
 
-def _area(model: Model, block: Block, shape: str, values: list[float]) -> float | None:
+def _sizes(model: Model, block: Block, shape: str, values: list[float]) -> list[float]:
+    """Return the given sizes of a shape; a single one of CIRC as a diameter."""
     given = len([word for word in block.data[0][1] if word]) if block.data else 0
     if shape == "CIRC" and given == 1:
         if model.deck.options.circ is None:
             model.deck.refuse(
                 f"*{block.name}, SECTION=CIRC", "radius_or_diameter", block.line, "--circ radius|diameter")
-            return None
+            return []
         if model.deck.options.circ == "radius":
             values = [2 * values[0]]
-    return profiles.calculix(shape, values[:given])
+    return values[:given]
+
+
+def _orient(model: Model, block: Block, made: Section, shape: str, sizes: list[float]) -> None:
+    """Read the direction n1 of a beam. Refuse a section whose centroid is beside its nodes, if beams bend."""
+    if len(block.data) > 1:
+        x, y, z = (model.numbers(*block.data[1]) + [0.0] * 3)[:3]
+        made.axis_1 = (x, y, z)
+    if not model.bends():
+        return
+    for name in ("OFFSET1", "OFFSET2"):
+        if model.number(block.line, block.parameters.get(name) or "0"):
+            model.deck.refuse(f"*BEAM SECTION, {name}", "offset", block.line, f"BEAM SECTION.{name}")
+    if made.bending and made.bending.eccentric or shape == "I" and len(sizes) > 1 and 2 * sizes[0] != sizes[1]:
+        model.deck.refuse(f"*BEAM SECTION, SECTION={quoted(shape)[1:-1]}", "neutral_axis", block.line,
+                          "BEAM SECTION.SECTION")
+    elif made.bending is None and not made.shape:
+        model.deck.refuse(f"*BEAM SECTION, SECTION={quoted(shape)[1:-1]}", "unknown_bending", block.line,
+                          "BEAM SECTION.SECTION")
+
+
+def normal(model: Model, block: Block, scope: Scope) -> None:
+    """Read the direction n2 of beams at their nodes. A case has one direction for each beam."""
+    found: dict[str, np.ndarray] = {}
+    for line, words in block.data:
+        values = (model.numbers(line, words[2:5]) + [0.0] * 3)[:3]
+        for one in model.elements_of(line, words[0], scope):
+            if one.family != BEAM:
+                continue
+            before = found.setdefault(one.name, np.array(values))
+            if np.linalg.norm(np.cross(before, values)) > ALONG * np.linalg.norm(before) * np.linalg.norm(values) and \
+                    model.bends():
+                model.deck.refuse("*NORMAL", "normals_differ", line, "NORMAL")
+                return
+    model.normals.update(found)
+    model.deck.take("*NORMAL", "direction of the section of beams")
+
+
+def shear_stiffness(model: Model, block: Block, scope: Scope) -> None:
+    """Refuse stiffnesses in shear of beams."""
+    if model.bends():
+        model.deck.refuse("*TRANSVERSE SHEAR STIFFNESS", "own_shear", block.line, "TRANSVERSE SHEAR STIFFNESS")
+    else:
+        model.deck.leave("*TRANSVERSE SHEAR STIFFNESS", "no beam bends", block.line)
 
 
 def general(model: Model, block: Block, scope: Scope) -> None:
@@ -143,7 +197,14 @@ def general(model: Model, block: Block, scope: Scope) -> None:
     made = Material(moduli[0], expansion=moduli[2] if len(moduli) > 2 else None)
     if "DENSITY" in block.parameters:
         made.density = model.number(block.line, block.parameters["DENSITY"])
-    _assign(model, block, scope, Section(numeric[0][0], made, "it has no area"))
+    area, about_1, product, about_2, torsion = (numeric[0] + [0.0] * 5)[:5]
+    made.shear_modulus = moduli[1] if len(moduli) > 1 else None
+    section = Section(area, made, "it has no area", bending=BeamSection(area, (about_1, about_2), torsion,
+                                                                        product=product))
+    if len(numeric) > 2 and numeric[1]:
+        x, y, z = (numeric[1] + [0.0] * 3)[:3]
+        section.axis_1 = (x, y, z)
+    _assign(model, block, scope, section)
 
 
 def spring(model: Model, block: Block, scope: Scope) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from statejump.kinds.truss.importing.contract import Card, idle, refused, table, used
 
-TURNS = "nodes of a truss do not rotate"
+TURNS = "inertia of rotations does not act in statics"
 TIME = "it changes with time or with another run"
 TABLE = "properties that depend on fields"
 OUTPUT = "output"
@@ -26,7 +26,8 @@ KEYWORDS: dict[str, Card] = table(
     used("ELGEN", "links in rows", "ELSET ALLNODES", refused={"ALLNODES": "nodes with numbers of their own"}),
     used("ELCOPY", "copied links", "ELEMENT_SHIFT OLD_SET NEW_SET SHIFT_NODES REFLECT",
          refused={"REFLECT": "copies that are mirrored"}),
-    used("ELEMENT", "link, spring or mass by its TYPE", "TYPE ELSET INPUT", refused={"INPUT": "a file of its own"}),
+    used("ELEMENT", "link, beam, spring or mass by its TYPE", "TYPE ELSET INPUT",
+         refused={"INPUT": "a file of its own"}),
     used("NSET", "names", "NSET GENERATE ELSET INSTANCE UNSORTED INTERNAL", idle={"UNSORTED INTERNAL": "names only"}),
     used("ELSET", "names", "ELSET GENERATE INSTANCE UNSORTED INTERNAL", idle={"UNSORTED INTERNAL": "names only"}),
     used("PARAMETER", "numbers for names in angle brackets; expressions are refused"),
@@ -44,12 +45,17 @@ KEYWORDS: dict[str, Card] = table(
     used("SOLID_SECTION", "area", "ELSET MATERIAL ORIENTATION CONTROLS NODAL_THICKNESS COMPOSITE REF_NODE",
          idle={"ORIENTATION": "the material is isotropic", "CONTROLS REF_NODE": SOLVE},
          refused={"NODAL_THICKNESS": "areas of nodes", "COMPOSITE": "layers"}),
-    used("BEAM_SECTION", "area of RECT, CIRC, PIPE, BOX, I, L, TRAPEZOID", "ELSET MATERIAL SECTION OFFSET1 OFFSET2 "
-         "POISSON TEMPERATURE ROTARY_INERTIA LUMPED ORIENTATION NODAL_THICKNESS",
-         idle={"OFFSET1 OFFSET2 POISSON ROTARY_INERTIA ORIENTATION": TURNS, "TEMPERATURE LUMPED": SOLVE}),
-    used("NODAL_THICKNESS", "area of RECT and CIRC, between the sizes of two nodes"),
-    used("BEAM_GENERAL_SECTION", "area of SECTION=GENERAL and its material", "ELSET SECTION DENSITY POISSON ZERO",
-         idle={"POISSON": TURNS}),
+    used("BEAM_SECTION", "section and direction n1; RECT, CIRC, PIPE, BOX and I whose centroid is at their nodes, "
+         "without OFFSET1 and OFFSET2; with `--beams-as-bars` the area, also of L and TRAPEZOID",
+         "ELSET MATERIAL SECTION OFFSET1 OFFSET2 POISSON TEMPERATURE ROTARY_INERTIA LUMPED ORIENTATION "
+         "NODAL_THICKNESS",
+         idle={"POISSON": "strains across the beam", "ROTARY_INERTIA": TURNS,
+               "ORIENTATION": "the material is isotropic", "TEMPERATURE LUMPED": SOLVE}),
+    used("NODAL_THICKNESS", "sizes of RECT and CIRC at two nodes; the beam is divided into 8 uniform ones"),
+    used("BEAM_GENERAL_SECTION", "section and material of SECTION=GENERAL", "ELSET SECTION DENSITY POISSON ZERO",
+         idle={"POISSON": "strains across the beam"}),
+    used("NORMAL", "direction n2 of beams at their nodes, one for each beam"),
+    used("TRANSVERSE_SHEAR_STIFFNESS", "nothing without beams; else it is refused"),
     used("SPRING", "spring along its line or to the ground", "ELSET NONLINEAR ORIENTATION DEPENDENCIES "
          "COMPLEX_STIFFNESS RTOL", idle={"RTOL": SOLVE, "COMPLEX_STIFFNESS": DYNAMIC},
          refused={"NONLINEAR": "a spring that is not linear", "ORIENTATION": "directions of its own",
@@ -62,12 +68,13 @@ KEYWORDS: dict[str, Card] = table(
          "TYPE REGION_TYPE",
          idle={"AMPLITUDE TYPE": "of motions that are not 0, which are not supported", "REGION_TYPE LOAD_CASE": SOLVE},
          refused={"FIXED SUBMODEL STEP DATASET": TIME, "USER": USER, "MASS_FLOW": "a fluid"}),
-    used("CLOAD", "dead load; a moment is nothing where it twists beams that are all along it, else it is refused",
+    used("CLOAD", "force; moment, where beams end; with `--beams-as-bars` a moment that bends a beam is refused",
          "OP AMPLITUDE SUBMODEL STEP DATASET TIME_DELAY USER SECTOR LOAD_CASE OMEGA0 FOLLOWER REGION_TYPE CYCLIC_MODE",
          idle={"REGION_TYPE CYCLIC_MODE": SOLVE},
          refused={"SUBMODEL STEP DATASET TIME_DELAY": TIME, "USER": USER, "FOLLOWER": "a load that turns",
                   "SECTOR LOAD_CASE OMEGA0": "loads of cyclic symmetry"}),
-    used("DLOAD", "gravity", "OP AMPLITUDE TIME_DELAY LOAD_CASE SECTOR SUBMODEL REGION_TYPE",
+    used("DLOAD", "gravity; P1 and P2 on beams with SECTION=RECT: forces and moments of both ends",
+         "OP AMPLITUDE TIME_DELAY LOAD_CASE SECTOR SUBMODEL REGION_TYPE",
          idle={"REGION_TYPE": SOLVE},
          refused={"TIME_DELAY SUBMODEL": TIME, "LOAD_CASE SECTOR": "loads of cyclic symmetry"}),
     used("TEMPERATURE", "temperature of links", "OP AMPLITUDE TIME_DELAY USER SUBMODEL STEP DATASET FILE BSTEP BINC "
@@ -110,9 +117,9 @@ KEYWORDS: dict[str, Card] = table(
          "ENERGY_FILE MODAL_OUTPUT MODAL_FILE MODAL_PRINT SECTION_PRINT SECTION_FILE FACE_PRINT MONITOR FILE_FORMAT "
          "PRINT DIAGNOSTICS INTEGRATED_OUTPUT INTEGRATED_OUTPUT_SECTION TIME_POINTS TIMEPOINTS RADIATION_FILE COMMENT "
          "END", OUTPUT),
-    idle("CONTROLS SOLVER_CONTROLS SECTION_CONTROLS NORMAL SURFACE FILTER PHYSICAL_CONSTANTS VALUES_AT_INFINITY "
-         "ANALYSIS DYNAMIC_CONTROLS DASHPOT DAMPING ROTARY_INERTIA TRANSVERSE_SHEAR_STIFFNESS BEAM_ADDED_INERTIA",
-         "rotations, damping, surfaces that nothing uses, or how a program solves"),
+    idle("CONTROLS SOLVER_CONTROLS SECTION_CONTROLS SURFACE FILTER PHYSICAL_CONSTANTS VALUES_AT_INFINITY "
+         "ANALYSIS DYNAMIC_CONTROLS DASHPOT DAMPING ROTARY_INERTIA BEAM_ADDED_INERTIA",
+         "inertia of rotations, damping, surfaces that nothing uses, or how a program solves"),
     idle("DYNAMIC FREQUENCY BUCKLE MODAL_DYNAMIC STEADY_STATE_DYNAMICS COMPLEX_FREQUENCY MODAL_DAMPING GLOBAL_DAMPING "
          "SELECT_CYCLIC_SYMMETRY_MODES SELECT_EIGENMODES RANDOM_RESPONSE RESPONSE_SPECTRUM GREEN GEOSTATIC "
          "SENSITIVITY DESIGN_VARIABLES OBJECTIVE CONSTRAINT COUPLED_TEMPERATURE-DISPLACEMENT "

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from statejump.core.reading import finite_number
+from statejump.kinds.truss.importing.beams import split_tapered
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
-from statejump.kinds.truss.importing.model import BENDING, Deck, Options
+from statejump.kinds.truss.importing.model import Deck, Options
 from statejump.kinds.truss.importing.nastran import bodies, control, elements, loads, nodes, properties
 from statejump.kinds.truss.importing.nastran.cards import Card, number_of, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
@@ -24,7 +25,7 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "PMASS": properties.pmass, "CMASS1": elements.cmass, "CMASS2": elements.cmass, "CONM1": elements.conm1,
     "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force, "FORCE2": loads.force, "MOMENT": loads.moment,
     "MOMENT1": loads.moment, "MOMENT2": loads.moment, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
-    "DEFORM": elements.deform,
+    "DEFORM": elements.deform, "TEMPRB": loads.beam_temperatures,
     "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "RROD": bodies.rrod,
     "MPC": bodies.mpc,
 }
@@ -60,9 +61,11 @@ def read(path: Path, options: Options | None = None) -> Deck:
     _take_together(reader)
     loads.temperatures(reader)
     elements.finish_bars(reader)
+    loads.finish(reader)
     settle_bodies(deck)
     if chosen.autospc:
         nodes.hold_singular(reader)
+    split_tapered(deck)
     if chosen.solution.startswith("106"):  # in this solution TREF belongs to the coefficient of expansion only
         for bar in deck.bars:
             bar.reference_temperature = None
@@ -93,8 +96,6 @@ def _check(reader: Reader, card: Card, given: control.Control) -> None:
         deck.waived.add(card.name)
         deck.leave(card.name, "left out by --ignore", card.line)
     else:
-        if known.bending and not deck.options.beams_as_bars:
-            deck.refuse(card.name, "bending", card.line, BENDING)
         if not known.own:
             _check_fields(reader, card)
 

@@ -18,7 +18,9 @@ def rbar(reader: Reader, card: Card) -> None:
     """Read a rigid bar between two nodes (RBAR, RBAR1). It must couple all translations."""
     first, second = (reader.node(card, place) for place in (1, 2))
     if card.name == "RBAR1":
-        if not MOVES <= set(card[3] or "123456"):
+        coupled_ones = set(card[3] or "123456")
+        pinned = coupled_ones != ALL
+        if not MOVES <= coupled_ones:
             reader.deck.refuse(card.name, "partial_coupling", card.line)
             return
     else:
@@ -35,7 +37,8 @@ def rbar(reader: Reader, card: Card) -> None:
         if not hinge and (len(free[0]) + len(free[1]) != 6 or coupled != [ALL - one for one in free]):
             reader.deck.refuse(card.name, "partial_coupling", card.line)
             return
-    reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second]))
+        pinned = hinge and coupled[free.index(frozenset())] != ALL
+    reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second], pinned))
 
 
 def rbe2(reader: Reader, card: Card) -> None:
@@ -48,10 +51,12 @@ def rbe2(reader: Reader, card: Card) -> None:
     others = reader.several(card, texts)
     if not components <= ALL:
         raise reader.fail(card, "deck_bad_value", problem=f"components {card[2]} are not of the digits 1 to 6")
-    if not components & MOVES:
+    if not components & MOVES and reader.bends():
+        reader.deck.refuse(card.name, "partial_coupling", card.line)
+    elif not components & MOVES:
         reader.deck.leave(card.name, "it couples rotations only", card.line)
     elif MOVES <= components:
-        reader.deck.rigid.append(RigidBody(card.line, card.name, [first, *others]))
+        reader.deck.rigid.append(RigidBody(card.line, card.name, [first, *others], components != ALL))
     elif any(reader.deck.nodes[other] != reader.deck.nodes[first] for other in others):
         reader.deck.refuse(card.name, "partial_coupling", card.line)
     else:
@@ -82,7 +87,7 @@ def mpc(reader: Reader, card: Card) -> None:
     """An equation between displacements."""
     # Each line of the card has two terms: node, component, factor.
     places = [place for start in range(0, len(card.fields), 8) for place in (start + 1, start + 4) if card[place]]
-    if {card[place + 1] for place in places} <= set("456"):
+    if {card[place + 1] for place in places} <= set("456") and not reader.bends():
         reader.deck.leave(card.name, "an equation of rotations: ends of bars turn freely", card.line)
         return
     terms = []

@@ -2,11 +2,14 @@
 """Bars, springs and masses."""
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from statejump.kinds.truss.importing.bending import Bending, Section, across, triad
 from statejump.kinds.truss.importing.model import Bar, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
-from statejump.kinds.truss.importing.nastran.reader import Property, Reader
+from statejump.kinds.truss.importing.nastran.reader import Material, Property, Reader
 from statejump.kinds.truss.importing.supports import add_spring, is_held
 
 SAME = 1e-6  # relative tolerance of offsets: cards have seven digits
@@ -38,15 +41,46 @@ def bar(reader: Reader, card: Card) -> None:
         default = other[1] or name
     ends = (reader.node(card, 2), reader.node(card, 3))
     made = Bar(name, ends, card.name, bends=beam)
-    if beam and any(card.fields[10:16]):
-        made.lengthened = _lengthened(reader, card, ends)
-    if beam:
+    bends = beam and reader.bends()
+    if bends:
+        _check_ends(reader, card)
+        reader.axes_y[name] = _axis_y(reader, card, ends[0])
+    elif beam:
+        if any(card.fields[10:16]):
+            made.lengthened = _lengthened(reader, card, ends)
         made.released = (_releases(reader, card, 8), _releases(reader, card, 9))
-    if any(made.released):
+    if bends:
+        reader.deck.take(card.name, "beam")
+    elif any(made.released):
         reader.deck.take(card.name, "masses of both ends: a pin flag releases the axial force")
     else:
         reader.deck.take(card.name, "link: it carries axial force only, its bending is left out" if beam else "link")
     reader.bars[name] = (card.line, made, reader.whole(card, 1, default))
+
+
+def _check_ends(reader: Reader, card: Card) -> None:
+    """Refuse released ends and offsets of a beam."""
+    for place, field in ((8, "PA"), (9, "PB")):
+        if set(card[place].replace(" ", "")) - {"0"}:
+            reader.deck.refuse(f"{card.name}.{field}", "released_end", card.line)
+    if any(reader.number(card, place, 0.0) for place in range(10, 16)):
+        reader.deck.refuse(f"{card.name}.W1A-W3B", "offset", card.line)
+
+
+def _axis_y(reader: Reader, card: Card, first: str) -> np.ndarray:
+    """Return the direction of axis y of a beam's section; zero if the deck does not give it."""
+    given, kind = card.fields[4:7], card[7]
+    default = (reader.cards.get({"CBAR": "BAROR", "CBEAM": "BEAMOR"}[card.name]) or [Card(0, "")])[0]
+    if not any(given):
+        given, kind = default.fields[4:7], kind or default[7]
+    if not any(given):
+        return np.zeros(3)
+    of = Card(card.line, card.name, given)
+    if not any(given[1:]) and given[0].isdecimal():
+        return np.subtract(reader.deck.nodes[reader.node(of, 0)], reader.deck.nodes[first])
+    vector = np.array([reader.number(of, at, 0.0) for at in range(3)])
+    frame = reader.frames["0" if kind.upper().startswith("B") else reader.displacement_frame[first]]
+    return np.asarray(vector @ frame.directions(reader.deck.nodes[first]))
 
 
 def _releases(reader: Reader, card: Card, place: int) -> bool:
@@ -85,6 +119,7 @@ def conrod(reader: Reader, card: Card) -> None:
     name = element(reader, card)
     made = Bar(name, (reader.node(card, 1), reader.node(card, 2)), card.name)
     made.area = reader.number(card, 4)
+    reader.torsion[name] = reader.number(card, 5, 0.0)
     made.more_mass = reader.number(card, 7, 0.0)
     reader.deck.take(card.name, "link")
     reader.conrods[name] = (card.line, made, reader.whole(card, 3))
@@ -113,6 +148,9 @@ def celas(reader: Reader, card: Card) -> None:
             raise reader.fail(card, "deck_undefined", what_it_is="PELAS", name=reader.whole(card, 1, name))
     components = [card[place + 1] or "0" for place in (2, 4) if card[place] and card[place] != "0"]
     if components and set(components) <= set("456"):
+        if reader.bends() and stiffness:
+            reader.deck.refuse(card.name, "rotation_spring", card.line)
+            return
         reader.deck.leave(card.name, "a spring of rotations: ends of bars turn freely", card.line)
         return
     if not set(components) <= set("123"):
@@ -135,7 +173,9 @@ def cbush(reader: Reader, card: Card) -> None:
     if not found:
         raise reader.fail(card, "deck_undefined", what_it_is="PBUSH", name=number)
     stiffness = _bush(reader, found[0])
-    if any(stiffness[3:]):
+    if any(stiffness[3:]) and reader.bends():
+        reader.deck.refuse("PBUSH.K4-K6", "rotation_spring", found[0].line)
+    elif any(stiffness[3:]):
         reader.deck.leave("PBUSH", "K4 to K6, stiffness of rotations: ends of bars turn freely", found[0].line)
     first = reader.node(card, 2)
     second = reader.node(card, 3) if card[3] and card[3] != "0" else None
@@ -171,11 +211,19 @@ def _bush(reader: Reader, card: Card) -> list[float]:
 
 
 def conm2(reader: Reader, card: Card) -> None:
-    """Read a mass at a node (CONM2). Its offset is omitted, because it acts only on rotations."""
+    """Read a mass at a node (CONM2). Gravity on a mass beside its node is a moment, where beams end."""
     element(reader, card, "mass ")
     node = reader.node(card, 1)
     mass = reader.number(card, 3, 0.0)
     weigh(reader, card, node, mass)
+    if not mass or not any(card.fields[4:7]):
+        return
+    offset = np.array([reader.number(card, at, 0.0) for at in (4, 5, 6)])
+    if card[2] == "-1":  # a position in the basic system
+        reader.mass_arms.append((card, node, mass, offset - reader.deck.nodes[node]))
+    else:
+        axes = reader.frame(card, 2).directions(reader.deck.nodes[node])
+        reader.mass_arms.append((card, node, mass, offset @ axes))
 
 
 def conm1(reader: Reader, card: Card) -> None:
@@ -215,8 +263,10 @@ def finish_bars(reader: Reader) -> None:
     """Give bars what properties and materials say."""
     deck = reader.deck
     ready: list[tuple[int, Bar, str, float]] = []
+    sections: dict[str, Property] = {}
+    shear: dict[str, float | None] = {}
     for line, made, name in reader.bars.values():
-        section = _section(reader, line, made, name)
+        section = sections[made.name] = _section(reader, line, made, name)
         if section.area is None:
             made.why_no_area = section.why
         made.area, made.more_mass = section.area, section.more
@@ -228,6 +278,10 @@ def finish_bars(reader: Reader) -> None:
         of = reader.materials[name]
         made.young_modulus, made.poisson_ratio, made.expansion = of.young_modulus, of.poisson_ratio, of.expansion
         made.reference_temperature = of.reference
+        shear[made.name] = of.shear_modulus
+        if made.name in reader.axes_y and made.area:
+            _bend(reader, line, made, sections[made.name], of)
+        _heat(reader, made)
         if of.density is not None and made.area:
             made.density = of.density * mass_area / made.area
         if made.more_mass and made.area:
@@ -236,6 +290,52 @@ def finish_bars(reader: Reader) -> None:
             _weigh_ends(reader, line, made)
         else:
             deck.bars.append(made)
+    _twist(reader, sections, shear)
+
+
+def _twist(reader: Reader, sections: Mapping[str, Property], shear: Mapping[str, float | None]) -> None:
+    """Give rods between ends of beams their stiffness in torsion. Elsewhere it acts on no rotation of a node."""
+    bent = reader.deck.bent()
+    for of in reader.deck.bars:
+        section = sections.get(of.name)
+        torsion = section.stations[0][1].torsion if section and section.stations else reader.torsion.get(of.name, 0.0)
+        if of.bends or not torsion or not shear.get(of.name) or not set(of.nodes) <= bent or not of.area:
+            continue
+        first, second = (np.array(reader.deck.nodes[end]) for end in of.nodes)
+        if np.any(first != second):
+            of.bending = Bending(Section(of.area, (0.0, 0.0), torsion), across(first, second), shear[of.name])
+
+
+def _bend(reader: Reader, line: int, of: Bar, section: Property, material: Material) -> None:
+    """Give a beam its bending. A beam whose section has neither second moments nor torsion stays a link."""
+    if not section.stations:
+        return
+    shear = material.shear_modulus
+    stations = section.stations
+    if not any((*stations[0][1].moments, stations[0][1].torsion)):
+        reader.deck.leave(of.kind, "a beam without second moments and torsion constant is a link", line)
+        return
+    if any(one.eccentric for _, one in stations):
+        reader.deck.refuse(f"{of.kind} {quoted('section')[1:-1]}", "neutral_axis", line, "PBEAML.NEUTRAL")
+    axis = reader.axes_y[of.name]
+    first, second = (np.array(reader.deck.nodes[end]) for end in of.nodes)
+    if triad(first, second, axis) is None and (
+            np.any(axis) or stations[0][1].moments[0] != stations[0][1].moments[1]):
+        raise reader.deck.fail(line, "deck_bad_geometry", f"{of.kind} {of.name}",
+                               problem="its direction of axis y is missing or along the beam")
+    of.bending = Bending(stations[0][1], axis if np.any(axis) else across(first, second), shear, stations)
+
+
+def _heat(reader: Reader, of: Bar) -> None:
+    """Give a bar or a beam the temperature and the gradients of TEMPRB."""
+    if of.name not in reader.beam_temperature:
+        return
+    card, mean, gradient = reader.beam_temperature[of.name]
+    of.temperature = mean
+    if of.bending:
+        of.bending.gradient = gradient
+    elif any(gradient):
+        reader.deck.refuse(card.name, "gradient_on_link", card.line)
 
 
 def _weigh_ends(reader: Reader, line: int, of: Bar) -> None:

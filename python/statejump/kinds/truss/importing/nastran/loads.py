@@ -2,9 +2,12 @@
 """Readers of sets of the case control, forces, gravity and temperatures."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from statejump.kinds.truss.importing.model import Moment, quoted
+from statejump.kinds.truss.importing.bending import Load, across, nodal_loads, shear_parameters, triad
+from statejump.kinds.truss.importing.model import Bar, Moment, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.control import FREE_SOLUTIONS, Control
 from statejump.kinds.truss.importing.nastran.reader import Reader
@@ -125,44 +128,127 @@ def gravity(reader: Reader, card: Card) -> None:
     reader.deck.take(card.name, "gravity")
 
 
+PLOAD1_AXES = {"X": np.eye(3)[0], "Y": np.eye(3)[1], "Z": np.eye(3)[2]}
+
+
 def pload1(reader: Reader, card: Card) -> None:
-    """Convert a load along a bar (PLOAD1) to forces on its ends; refuse a load across the bar, which bends it."""
-    factor, name = reader.factor(card, "load") or 0.0, reader.whole(card, 1)
+    """Read a load on a bar or a beam (PLOAD1). It becomes loads of both ends after sections are known."""
+    name, kind, scale = reader.whole(card, 1), card[2].upper(), card[3].upper()
     if name not in reader.bars:
         raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
-    ends, released = reader.bars[name][1].nodes, reader.bars[name][1].released
+    if scale not in ("LE", "FR", "LEPR", "FRPR") or kind[:1] not in ("F", "M") or kind[1:2] not in PLOAD1_AXES:
+        reader.deck.refuse(card.name, "load_scale", card.line, scale=quoted(f"{kind} {scale}")[1:-1])
+        return
+    ends = reader.bars[name][1].nodes
     first, second = (np.array(reader.deck.nodes[end]) for end in ends)
     length = float(np.linalg.norm(second - first))
-    axis = (second - first) / length if length else np.zeros(3)
-    kind, scale = card[2].upper(), card[3].upper()
-    directions = {"FX": np.eye(3)[0], "FY": np.eye(3)[1], "FZ": np.eye(3)[2], "FXE": axis}
-    along = directions.get(kind)
-    if along is None or np.linalg.norm(np.cross(along, axis)) > ALONG:
-        reader.deck.refuse(card.name, "lateral_load", card.line)
-        return
-    if scale not in ("LE", "FR"):
-        reader.deck.refuse(card.name, "load_scale", card.line, scale=quoted(card[3])[1:-1])
-        return
+    if not length:
+        raise reader.fail(card, "deck_bad_geometry", problem="its bar has no length")
+    if kind.endswith("E"):
+        axes = triad(first, second, reader.axes_y.get(name, across(first, second)))
+        if axes is None:
+            axes = triad(first, second, across(first, second))
+        assert axes is not None
+        direction = axes["XYZ".index(kind[1])]
+    else:
+        direction = PLOAD1_AXES[kind[1]]
     start, low = reader.number(card, 4), reader.number(card, 5)
     end = reader.number(card, 6) if card[6] else start
     high = reader.number(card, 7) if card[7] else low
-    start, end = (value / (length if scale == "LE" and length else 1.0) for value in (start, end))
-    if end == start:  # a force
-        shares = (low * (1 - start), low * start)
-    else:
-        span, rise = end - start, high - low
-        total = span * length * (low + high) / 2
-        # Integral of load times position along the bar, as a fraction of its length.
-        second_share = span * length * (low * start + low * span / 2 + rise * start / 2 + rise * span / 3)
-        shares = (total - second_share, second_share)
-    if all(released):
-        reader.deck.refuse(card.name, "released_bar", card.line)
+    if scale.startswith("LE"):
+        start, end = start / length, end / length
+    factor = reader.factor(card, "load") or 0.0
+    if scale.endswith("PR") and end != start:  # per length of the projection across the load
+        factor *= float(np.linalg.norm(np.cross(direction, (second - first) / length)))
+    reader.beam_loads.append((card, name, Load(start, end, direction * low * factor, direction * high * factor,
+                                               kind.startswith("M"))))
+
+
+def finish(reader: Reader) -> None:
+    """Convert loads on beams and weights of masses beside their nodes to loads of nodes."""
+    deck = reader.deck
+    for card, name, load in reader.beam_loads:
+        (_load_beam if reader.bars[name][1].bending else _load_bar)(reader, card, reader.bars[name][1], load)
+    gravity, bent = np.array(deck.gravity), deck.bent()
+    for card, node, mass, arm in reader.mass_arms:
+        moment_vector = np.cross(arm, mass * gravity)
+        if not reader.bends():
+            deck.leave(card.name, "offset of a mass: nodes of a truss do not rotate", card.line)
+        elif np.any(moment_vector):
+            deck.moments.append(Moment(card.line, card.name, node, moment_vector, "CONM2.X1-X3", True))
+        elif node in bent:
+            deck.take(card.name, "offset of a mass: no gravity acts on it")
+
+
+def _load_beam(reader: Reader, card: Card, of: Bar, load: Load) -> None:
+    """Load the nodes of a beam so that they move as under the load on the beam."""
+    deck, bending = reader.deck, of.bending
+    assert bending is not None
+    if len(bending.stations) > 1:
+        deck.refuse(card.name, "load_on_tapered_beam", card.line)
         return
-    if any(released):  # the other end carries the whole load
-        shares = (0.0, sum(shares)) if released[0] else (sum(shares), 0.0)
-    for node, share in zip(ends, shares):
-        reader.deck.load(node, [float(part) * share * factor for part in along], card.line, card.name)
-    reader.deck.take(card.name, "dead loads of both ends")
+    first, second = (np.array(deck.nodes[end]) for end in of.nodes)
+    section, angle = bending.section.turned()
+    axes = triad(first, second, bending.axis_y)
+    if axes is None or of.young_modulus is None:
+        return  # the error of the beam is reported elsewhere
+    y, z = axes[1:]
+    axes = np.array([axes[0], y * np.cos(angle) + z * np.sin(angle), z * np.cos(angle) - y * np.sin(angle)])
+    length = float(np.linalg.norm(second - first))
+    shear = shear_parameters(replace(bending, section=section), of.young_modulus, length)
+    found = nodal_loads(load, length, axes, shear)
+    for node, force_vector, moment_vector in zip(of.nodes, found[::2], found[1::2]):
+        deck.load(node, [float(part) for part in force_vector], card.line, card.name)
+        deck.turn(node, moment_vector)
+    deck.take(card.name, "forces and moments of both ends; section forces exclude those of the clamped beam")
+
+
+def _load_bar(reader: Reader, card: Card, of: Bar, load: Load) -> None:
+    """Load the ends of a pin-jointed bar; refuse a load that would bend it."""
+    deck = reader.deck
+    first, second = (np.array(deck.nodes[end]) for end in of.nodes)
+    length = float(np.linalg.norm(second - first))
+    axis = (second - first) / length
+    # A load varies linearly, so its direction is that of its larger end.
+    larger = max(load.first, load.last, key=lambda one: float(np.linalg.norm(one)))
+    size = float(np.linalg.norm(larger))
+    if load.moment or np.linalg.norm(np.cross(larger, axis)) > ALONG * size:
+        deck.refuse(card.name, "lateral_load", card.line)
+        return
+    if all(of.released):
+        deck.refuse(card.name, "released_bar", card.line)
+        return
+    found = nodal_loads(load, length, np.array([axis, axis, axis]) * np.array([[1.0], [0.0], [0.0]]), (0.0, 0.0))
+    shares = [found[0], found[2]]
+    if any(of.released):  # the other end carries the whole load
+        shares = [np.zeros(3), shares[0] + shares[1]] if of.released[0] else [shares[0] + shares[1], np.zeros(3)]
+    for node, share in zip(of.nodes, shares):
+        deck.load(node, [float(part) for part in share], card.line, card.name)
+    deck.take(card.name, "dead loads of both ends")
+
+
+def beam_temperatures(reader: Reader, card: Card) -> None:
+    """Read temperatures and gradients of beams (TEMPRB). Temperatures at points of the section only print stress."""
+    names = [reader.whole(card, 1)]
+    rest = [text for text in card.fields[16:] if text]
+    while rest:
+        if len(rest) > 2 and rest[1].upper() == "THRU":
+            step = int(reader.name(card.line, rest[4])) if len(rest) > 4 and rest[3].upper() == "BY" else 1
+            low, high = (int(reader.name(card.line, rest[at])) for at in (0, 2))
+            names += [name for name in reader.bars if low <= int(name) <= high and (int(name) - low) % step == 0]
+            rest = rest[5:] if step != 1 or len(rest) > 4 and rest[3].upper() == "BY" else rest[3:]
+        else:
+            names.append(reader.name(card.line, rest.pop(0)))
+    first, second = reader.number(card, 2, 0.0), reader.number(card, 3, 0.0)
+    gradients = [reader.number(card, at, 0.0) for at in range(4, 8)]
+    if gradients[0] != gradients[1] or gradients[2] != gradients[3]:
+        reader.deck.refuse(card.name, "temperature_gradient_varies", card.line)
+        return
+    for name in names:
+        if name not in reader.bars:
+            raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
+        reader.beam_temperature[name] = (card, (first + second) / 2, (gradients[0], gradients[2]))
+    reader.deck.take(card.name, "temperature and gradients of beams", len(names))
 
 
 def temperatures(reader: Reader) -> None:
@@ -183,7 +269,8 @@ def temperatures(reader: Reader) -> None:
         if default is not None:
             for name in reader.deck.nodes:
                 found.setdefault(name, default)
-        if reader.sets[kind] and not found:
+        if reader.sets[kind] and not found and not any(
+                reader.factor(card, kind) is not None for card in reader.cards.get("TEMPRB", [])):
             reader.deck.refuse("TEMPERATURE", "missing_set", 0, set_name=next(iter(reader.sets[kind])))
     _left(reader)
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from statejump.kinds.truss.importing.beams import node_stiffness
 from statejump.kinds.truss.importing.coordinates import BASIC, by_points
-from statejump.kinds.truss.importing.model import Deck, quoted
+from statejump.kinds.truss.importing.model import quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions
@@ -125,9 +126,11 @@ def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
         raise reader.fail(card, "deck_bad_value",
                           problem=f"components {quoted(components)} are not of the digits 1 to 6")
     moves = [int(one) - 1 for one in dict.fromkeys(components) if one in "123"]
-    if set(components) & set("456"):
+    turns = [int(one) - 4 for one in dict.fromkeys(components) if one in "456"]
+    if turns and not reader.bends():
         reader.deck.leave(card.name, "components 4 to 6: ends of bars turn freely", card.line)
-    for node in nodes if moves else ():
+        turns = []
+    for node in nodes if moves or turns else ():
         frame = reader.frames.get(reader.displacement_frame[node])
         if frame is None:
             raise reader.fail(card, "deck_undefined", what_it_is="coordinate system",
@@ -135,8 +138,12 @@ def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
         directions = frame.directions(reader.deck.nodes[node])
         for one in moves:
             reader.deck.hold(node, directions[one])
+        for one in turns:
+            reader.deck.hold_rotation(node, directions[one])
     if moves:
         reader.deck.take(card.name, "directions without motion", len(nodes))
+    if turns:
+        reader.deck.take(card.name, "directions without rotation, where beams end", len(nodes))
 
 
 def spc1(reader: Reader, card: Card) -> None:
@@ -156,12 +163,19 @@ def spc(reader: Reader, card: Card) -> None:
 
 
 def hold_singular(reader: Reader) -> None:
-    """Hold components without stiffness, in displacement systems. Ends of beams are excepted: in Nastran they are
-    stiff."""
+    """Hold components without stiffness, in displacement systems. Ends of beams that become pin-jointed bars are
+    excepted: in Nastran they are stiff."""
     deck = reader.deck
     stiffness: dict[str, np.ndarray] = {}
-    bent = {end for bar in deck.bars if bar.bends for end in bar.nodes}
-    pairs = [bar.nodes for bar in deck.bars]
+    rotational: dict[str, np.ndarray] = {}
+    bent = {end for bar in deck.bars if bar.bends and not bar.bending for end in bar.nodes}
+    for bar in deck.bars:
+        if bar.bending:
+            blocks = node_stiffness(bar, *(np.array(deck.nodes[end]) for end in bar.nodes))
+            for end in bar.nodes:
+                for of, block in zip((stiffness, rotational), blocks):
+                    of[end] = of.get(end, np.zeros((3, 3))) + block
+    pairs = [bar.nodes for bar in deck.bars if not bar.bending]
     pairs += [(spring.first, spring.second) for spring in deck.springs if spring.second]
     for first, second in pairs:
         way = np.subtract(deck.nodes[second], deck.nodes[first])
@@ -176,21 +190,28 @@ def hold_singular(reader: Reader) -> None:
             block = np.outer(spring.direction, spring.direction)
             stiffness[spring.first] = stiffness.get(spring.first, np.zeros((3, 3))) + block
     tied = deck.equation_directions()
+    for node, block in rotational.items():
+        axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
+        largest = np.einsum("ij,jk,ik->i", axes, block, axes).max()
+        for free in _left_free(np.array(deck.held_rotations.get(node, [])).reshape(-1, 3), axes):
+            if free @ block @ free <= EPZERO * largest:
+                deck.hold_rotation(node, free)
+                deck.take("AUTOSPC", "rotations of nodes without stiffness, held as in Nastran")
     for node, block in stiffness.items():
         if node in bent:
             continue
         axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
         largest = np.einsum("ij,jk,ik->i", axes, block, axes).max()
-        for free in _left_free(deck, node, axes, tied.get(node, [])):
+        for free in _left_free(np.vstack([held_directions(deck, node), *tied.get(node, [])]), axes):
             if free @ block @ free > EPZERO * largest:
                 continue
             deck.hold(node, [float(part) for part in free])
             deck.take("AUTOSPC", "directions of nodes without stiffness, held as in Nastran")
 
 
-def _left_free(deck: Deck, node: str, axes: np.ndarray, tied: list[np.ndarray]) -> Iterator[np.ndarray]:
-    """Yield those axes that neither supports hold nor equations couple."""
-    basis = basis_of(np.vstack([held_directions(deck, node), *tied]))
+def _left_free(held: np.ndarray, axes: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield the directions along the axes that neither supports hold nor equations couple."""
+    basis = basis_of(held)
     for axis in axes:
         free = axis - basis.T @ (basis @ axis)
         size = np.linalg.norm(free)

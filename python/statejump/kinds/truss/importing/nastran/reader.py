@@ -6,6 +6,9 @@ from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
+from statejump.kinds.truss.importing.bending import Load, Section
 from statejump.kinds.truss.importing.coordinates import Frame
 from statejump.kinds.truss.importing.model import Bar, Deck, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card, number_of
@@ -16,6 +19,7 @@ class Material:
     """MAT1; None: the card does not say."""
 
     young_modulus: float | None
+    shear_modulus: float | None
     poisson_ratio: float | None
     density: float | None
     expansion: float | None
@@ -24,9 +28,10 @@ class Material:
 
 @dataclass
 class Property:
-    """Section of a bar.
+    """Section of a bar or a beam.
 
     :param area: area; None: unknown, with the reason in ``why``
+    :param stations: sections of a beam by fraction of its length, from 0 to 1; a uniform beam has one
     :param mass_area: mean area, which determines the mass; it differs from ``area`` in a taper
     :param more: non-structural mass per length
     """
@@ -36,6 +41,7 @@ class Property:
     why: str = ""
     mass_area: float | None = None
     more: float = 0.0
+    stations: tuple[tuple[float, Section], ...] = ()
 
 
 @dataclass
@@ -57,9 +63,18 @@ class Reader:
     component_masses: dict[str, list[float]] = field(default_factory=dict)  # CMASS1, CMASS2 by node: directions 1 to 3
     component_cards: dict[str, Card] = field(default_factory=dict)  # the first of each node
     bars: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, property
+    axes_y: dict[str, np.ndarray] = field(default_factory=dict)  # direction of axis y of the section, by beam
+    beam_temperature: dict[str, tuple[Card, float, tuple[float, float]]] = field(default_factory=dict)  # TEMPRB
+    mass_arms: list[tuple[Card, str, float, np.ndarray]] = field(default_factory=list)  # CONM2: card, node, mass, arm
+    torsion: dict[str, float] = field(default_factory=dict)  # torsion constants of CONROD
+    beam_loads: list[tuple[Card, str, Load]] = field(default_factory=list)  # with the name of their beam
     conrods: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, material
     elements: set[str] = field(default_factory=set)
     sorted_nodes: list[int] = field(default_factory=list)
+
+    def bends(self) -> bool:
+        """Return whether beams of the deck bend."""
+        return not self.deck.options.beams_as_bars and bool(self.cards.get("CBAR") or self.cards.get("CBEAM"))
 
     def number(self, card: Card, place: int, default: float | None = None) -> float:
         """Return a real number of a field."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from statejump.kinds.truss.importing.contract import Card, idle, refused, table, used
 
 TURNS = "nodes of a truss do not rotate"
-BENDS = "bars do not bend"
+WARPING = "warping: torsion is that of St. Venant"
+AS_BARS = "; with `--beams-as-bars` a pin-jointed bar, whose offsets must be equal at both ends or along the bar"
 MATERIAL_DAMPING = "damping does not act in statics"
 SECTION_POINTS = "points where stress is printed"
 DYNAMIC = "acts in dynamics, buckling or modes only; the import takes structure, static loads and temperatures"
@@ -15,12 +16,12 @@ HEAT = "heat transfer: temperatures are those of TEMP and TEMPD"
 OUTPUT = "output"
 THROUGH = "acts through elements that name it, which are not supported"
 SHELL, SOLID = "shells are no part of a truss", "solids are no part of a truss"
-RIGID = "rigid elements need rotations"
+RIGID = "rigid element of another kind"
 SUPORTED = "supports of inertia relief or of a rigid body; in modes and responses they hold nothing and are left out"
 EXACT = "reduction, exact in statics"
 BODY = "one node of those at one place, where forces and masses of the others act; apart from that it is refused"
 EXPANDS = "thermal expansion of a rigid bar"
-TWIST = "nothing where it twists rods, or beams that are all along it; else it bends beams, which is refused"
+TWIST = "moment, where beams end; nothing where it twists rods; with `--beams-as-bars` refused if it bends beams"
 POINTS = "end A: C1 C2 D1 D2 E1 E2 F1 F2"
 
 CARDS: dict[str, Card] = table(
@@ -32,24 +33,25 @@ CARDS: dict[str, Card] = table(
     # Elements and their sections.
     used("CROD", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CTUBE", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
-    used("CONROD", "link", "EID G1 G2 MID A J C NSM", idle={"J C": TURNS}),
-    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar; masses of both ends, where a "
-           "pin flag releases the axial force",
+    used("CONROD", "link; beam with torsion only, between ends of beams", "EID G1 G2 MID A J C NSM",
+         idle={"C": SECTION_POINTS}),
+    *(used(name, f"beam; without second moments and torsion constant a link; no pin flags and offsets{AS_BARS}",
            f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
-           idle={f"X1 X2 X3{more}": BENDS}, bending=True)
+           refused={more.strip(): WARPING} if more else {})
       for name, more in (("CBAR", ""), ("CBEAM", " SA SB"))),
-    used("BAROR", "default property of CBAR", "- PID - - X1 X2 X3 OFFT", idle={"X1 X2 X3 OFFT": BENDS}),
-    used("BEAMOR", "default property of CBEAM", "- PID - - X1 X2 X3 OFFT", idle={"X1 X2 X3 OFFT": BENDS}),
-    used("PROD", "area", "PID MID A J C NSM", idle={"J C": TURNS}),
+    used("BAROR", "default property and axis of CBAR", "- PID - - X1 X2 X3 OFFT"),
+    used("BEAMOR", "default property and axis of CBEAM", "- PID - - X1 X2 X3 OFFT"),
+    used("PROD", "area; torsion between ends of beams", "PID MID A J C NSM", idle={"C": SECTION_POINTS}),
     used("PTUBE", "area", "PID MID OD T NSM OD2"),
-    used("PBAR", "area", "PID MID A I1 I2 J NSM - C1 C2 D1 D2 E1 E2 F1 F2 K1 K2 I12",
-         idle={"I1 I2 J K1 K2 I12": BENDS, "C1 C2 D1 D2 E1 E2 F1 F2": SECTION_POINTS}),
-    used("PBARL", "area", "PID MID GROUP TYPE - - - - DIMi NSM", own=True),
-    used("PBEAM", "area, also of a taper", "PID MID A I1 I2 I12 J NSM C1 C2 D1 D2 E1 E2 F1 F2 SO X/XB K1 K2 S1 S2 "
+    used("PBAR", "section", "PID MID A I1 I2 J NSM - C1 C2 D1 D2 E1 E2 F1 F2 K1 K2 I12",
+         idle={"C1 C2 D1 D2 E1 E2 F1 F2": SECTION_POINTS}),
+    used("PBARL", "section", "PID MID GROUP TYPE - - - - DIMi NSM", own=True),
+    used("PBEAM", "section; a taper is divided into 8 uniform beams; N1, N2 are refused",
+         "PID MID A I1 I2 I12 J NSM C1 C2 D1 D2 E1 E2 F1 F2 SO X/XB K1 K2 S1 S2 "
          "NSI(A) NSI(B) CW(A) CW(B) M1(A) M2(A) M1(B) M2(B) N1(A) N2(A) N1(B) N2(B)",
-         idle={"I1 I2 I12 J K1 K2 S1 S2 CW(A) CW(B) N1(A) N2(A) N1(B) N2(B)": BENDS,
+         idle={"S1 S2 CW(A) CW(B)": "they act in warping and in the shear of tapers",
                "NSI(A) NSI(B) M1(A) M2(A) M1(B) M2(B)": TURNS, "C1 C2 D1 D2 E1 E2 F1 F2 SO": SECTION_POINTS}, own=True),
-    used("PBEAML", "area, also of a taper", "PID MID GROUP TYPE - - - - DIMi NSM SO X/XB",
+    used("PBEAML", "section; a taper is divided into 8 uniform beams", "PID MID GROUP TYPE - - - - DIMi NSM SO X/XB",
          idle={"SO": SECTION_POINTS}, own=True),
     used("MAT1", "material", "MID E G NU RHO A TREF GE ST SC SS MCSID",
          idle={"GE": MATERIAL_DAMPING, "ST SC SS": "stress limits: only margins are made of them",
@@ -68,8 +70,9 @@ CARDS: dict[str, Card] = table(
     used("CONM1", "mass of a node", "EID G CID M11 M21 M22 M31 M32 M33 M41 M42 M43 M44 M51 M52 M53 M54 M55 M61 M62 M63 "
          "M64 M65 M66", idle={"M44 M54 M55 M64 M65 M66": TURNS},
          refused={"M21 M31 M32 M41 M42 M43 M51 M52 M53 M61 M62 M63": "it couples directions"}),
-    used("CONM2", "mass of a node", "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33",
-         idle={"CID X1 X2 X3 I11 I21 I22 I31 I32 I33": TURNS}),
+    used("CONM2", "mass of a node; beside it, its weight is a moment where beams end",
+         "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33",
+         idle={"I11 I21 I22 I31 I32 I33": "inertia of rotations does not act in statics"}),
     used("CMASS1", "mass of a node, where it is one in all directions that are not held", "EID PID G1 C1 G2 C2"),
     used("CMASS2", "mass of a node, where it is one in all directions that are not held", "EID M G1 C1 G2 C2"),
     used("PMASS", "masses of CMASS1", "PID1 M1 PID2 M2 PID3 M3 PID4 M4"),
@@ -96,7 +99,11 @@ CARDS: dict[str, Card] = table(
     *(used(name, TWIST, f"SID G {more}", sets="load") for name, more in (
         ("MOMENT", "CID M N1 N2 N3"), ("MOMENT1", "M G1 G2"), ("MOMENT2", "M G1 G2 G3 G4"))),
     used("DEFORM", "stress-free length of a bar", "SID EID1 D1 EID2 D2 EID3 D3", sets="deform"),
-    used("PLOAD1", "dead loads of both ends, of a load along the bar", "SID EID TYPE SCALE X1 P1 X2 P2", sets="load"),
+    used("PLOAD1", "loads of both ends, with which nodes move as under the load; section forces of its beam exclude "
+         "those of the clamped beam; bars: only along them", "SID EID TYPE SCALE X1 P1 X2 P2", sets="load"),
+    used("TEMPRB", "temperatures and gradients of beams; gradients must be equal at both ends",
+         "SID EID1 T(A) T(B) TP1(A) TP1(B) TP2(A) TP2(B) TC(A) TD(A) TE(A) TF(A) TC(B) TD(B) TE(B) TF(B) EIDi",
+         idle={"TC(A) TD(A) TE(A) TF(A) TC(B) TD(B) TE(B) TF(B)": SECTION_POINTS}, repeats=1, sets="temperature"),
     used("GRAV", "gravity", "SID CID A N1 N2 N3 MB", idle={"MB": "superelement: the structure is taken as one"},
          sets="load"),
     used("TEMP", "temperature of links", "SID G1 T1 G2 T2 G3 T3", sets="temperature"),
@@ -110,7 +117,7 @@ CARDS: dict[str, Card] = table(
     refused("PLOAD PLOAD2 PLOAD3 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
     refused("RFORCE RFORCE1 ACCEL ACCEL1", "loads of a field of accelerations", sets="load"),
     refused("SLOAD", "load on a scalar point", sets="load"),
-    refused("TEMPRB TEMPP1 TEMPP2 TEMPP3 TEMPB3 TEMPF TEMPN1 TEMPBC TEMPAX", "temperatures of elements",
+    refused("TEMPP1 TEMPP2 TEMPP3 TEMPB3 TEMPF TEMPN1 TEMPBC TEMPAX", "temperatures of elements",
             sets="temperature"),
     refused("MATT1 MATT2 MATT3 MATT5 MATT8 MATT9", "properties that depend on temperature"),
     refused("MATS1 CREEP", "material that is not linear"),
