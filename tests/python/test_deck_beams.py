@@ -98,6 +98,33 @@ def test_orientation_follows_the_system_of_the_first_node(tmp_path: Path) -> Non
     assert moved(nastran(tmp_path, bulk + "CBAR,1,1,1,2,0.,1.,0.\n" + load))[1] == pytest.approx(SOFT_Z, rel=1e-6)
 
 
+def test_pin_flags_release_moments(tmp_path: Path) -> None:
+    """Two beams between clamps meet at a node. One does not transmit moments to it, so both bend as cantilevers."""
+    bulk = BEAM + f"GRID,3,,{2 * LENGTH},0.,0.\nSPC1,1,123456,3\nFORCE,5,2,,1.,0.,1.,0.\n"
+    joined = "CBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,2,3,0.,1.,0.\n"
+    alone = LENGTH**3 / (6 * MODULUS * STRONG)
+    assert moved(nastran(tmp_path, bulk + joined))[1] == pytest.approx(alone / 4, rel=1e-6)
+    document = nastran(tmp_path, bulk + joined.replace("1,1,1,2,0.,1.,0.", "1,1,1,2,0.,1.,0.\n,,456"))
+    assert document["beam"][0]["released_second"] == ["Rx", "Ry", "Rz"]
+    assert moved(document)[1] == pytest.approx(alone, rel=1e-6)
+
+
+def test_both_ends_released_carry_axial_force_only(tmp_path: Path) -> None:
+    bulk = BEAM + "SPC1,1,23,2\nFORCE,5,2,,1.,1.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n,456,456\n"
+    assert moved(nastran(tmp_path, bulk))[0] == pytest.approx(LENGTH / (MODULUS * 1e-4), rel=1e-9)
+
+
+def test_offsets_turn_with_their_nodes(tmp_path: Path) -> None:
+    """The axis of the beam is beside its nodes by h, so a force along it bends it by the moment of h."""
+    h = 0.2
+    bar = f"CBAR,1,1,1,2,0.,1.,0.\n,,,0.,0.,{h},0.,0.,{h}\n"
+    document = nastran(tmp_path, BEAM + bar + "FORCE,5,2,,1.-3,1.,0.,0.\n")
+    assert document["beam"][0]["offset_second_m"] == pytest.approx([0, 0, h])
+    expected = LENGTH / (MODULUS * 1e-4) + h**2 * LENGTH / (MODULUS * WEAK)
+    # Its rotation of 2e-7 shortens it by the rotation over 2 h, in relation to the displacement.
+    assert moved(document)[0] == pytest.approx(1e-3 * expected, rel=2e-6)
+
+
 def test_moments_bend_and_twist(tmp_path: Path) -> None:
     bar = BEAM + "CBAR,1,1,1,2,0.,1.,0.\n"
     turned = moved(nastran(tmp_path, bar + "MOMENT,5,2,,1.,0.,0.,1.\n"), key="rotation_rad")
@@ -289,8 +316,8 @@ def test_rotations_without_stiffness_are_held_as_in_nastran(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("cards, card, reason", [
-    ("CBAR,1,1,1,2,0.,1.,0.\n,6\n", "CBAR.PA", "released_end"),
-    ("CBAR,1,1,1,2,0.,1.,0.\n,,,0.,.1,0.,0.,.1,0.\n", "CBAR.W1A-W3B", "offset"),
+    ("CBAR,1,1,1,2,0.,1.,0.\n,2\n", "CBAR.PA", "released_shear"),
+    ("CBAR,1,1,1,2,0.,1.,0.,GOO\n,,,0.,.1,0.,0.,.1,0.\n", "CBAR.W1A-W3B", "offset_in_element"),
     ("CBAR,1,1,1,2,0.,1.,0.\nCELAS2,9,1.,2,6\n", "CELAS2", "rotation_spring"),
     ("CBAR,1,1,1,2,0.,1.,0.\nGRID,3,,2.,0.,0.\nGRID,4,,4.,0.,0.\nCBAR,2,1,3,4,0.,1.,0.\nRBE2,9,2,123,3\n", "RBE2", "hinge"),
 ])

@@ -517,8 +517,8 @@ def test_several_unsupported_cards_are_named_at_once(tmp_path: Path) -> None:
 
 
 BENT = {
-    "released end": ("CBAR,1,1,1,2,0.,1.,0.\n,,6\n", {}, failure("deck_not_supported", card="CBAR.PB", reason="released_end", line=8)),
-    "offset of a beam": ("CBAR,1,1,1,2,0.,1.,0.\n,,,0.,.1,0.,0.,.1,0.\n", {}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="offset")),
+    "released end": ("CBAR,1,1,1,2,0.,1.,0.\n,,3\n", {}, failure("deck_not_supported", card="CBAR.PB", reason="released_shear", line=8)),
+    "offset of a beam": ("CBAR,1,1,1,2,0.,1.,0.,GOO\n,,,0.,.1,0.,0.,.1,0.\n", {}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="offset_in_element")),
     "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,7\n", {"beams_as_bars": True}, failure("deck_bad_number", text="'7'", line=8)),
     "load on a loose bar": ("CBAR,1,1,1,2,0.,1.,0.\n,1,1\nPLOAD1,5,1,FX,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="PLOAD1", reason="released_bar")),
     "offset": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.5,0.,0.,.5,.1,0.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="unequal_offsets")),

@@ -74,6 +74,7 @@ void System::find_scales() {
       const ElementScale scale = elements[i].scale(frames[i], drawn_);
       stiffness_scale_ = std::max(stiffness_scale_, scale.stiffness);
       force = std::max(force, scale.force);
+      force_by_rotation_ = std::max(force_by_rotation_, scale.by_rotation);
       if (scale.program < 0) continue;
       strain = std::max(strain, scale.strain_per_kelvin * hottest[index(scale.program)]);
     }
@@ -121,16 +122,8 @@ double System::reach(const VectorXd& z) const {
 
 double System::force_rounding(const VectorXd& z) const {
   // Rotations of nodes are those of matrices, whose entries are rounded as 1 is.
-  double turning = 0.0;
-  each_element_type([&](const auto& elements, const auto&, std::size_t) {
-    for (const auto& one : elements) {
-      if constexpr (requires { one.bending_stiffness_y; }) {  // 12 E I/l²: force by a rotation
-        const double bending = 12.0 * std::max(one.bending_stiffness_y, one.bending_stiffness_z);
-        turning = std::max(turning, bending / (one.stress_free_length * one.stress_free_length));
-      }
-    }
-  });
-  return 64.0 * std::numeric_limits<double>::epsilon() * (stiffness_scale_ * reach(z) + turning);
+  return 64.0 * std::numeric_limits<double>::epsilon() *
+         (stiffness_scale_ * reach(z) + force_by_rotation_);
 }
 
 namespace {

@@ -408,6 +408,7 @@ class System {
   bool slips_smoothly_ = false;
   bool has_kinks_ = false;
   double stiffness_scale_ = 0.0;
+  double force_by_rotation_ = 0.0;  // of a node by 1 rad [N]
   double size_ = 0.0;
   double path_scale_ = 0.0;
   std::vector<Vector3d> drawn_;  // of each node; contiguous, unlike those of the model

@@ -58,10 +58,13 @@ Temperatures temperatures(const Beam& beam, const ElementState& state) {
   return {state.temperature_change(beam.program), state.temperature_change(beam.gradient_program)};
 }
 
-/// Stress-free curvatures about y and z per ΔT of the gradients' program [1/(m K)]. A fibre at y
-/// and z has the strain κ_y z − κ_z y.
-std::array<double, 2> curvature_per_kelvin(const Beam& beam) {
-  return {beam.thermal_expansion * beam.gradient_z, -beam.thermal_expansion * beam.gradient_y};
+/// Stress-free curvatures about axes 2 and 3 of the frame per ΔT of the gradients' program
+/// [1/(m K)]. A fibre at y and z has the strain κ_y z − κ_z y.
+std::array<double, 2> curvature_per_kelvin(const Beam& beam, const Beam::Frame& frame) {
+  const double about_y = beam.thermal_expansion * beam.gradient_z;
+  const double about_z = -beam.thermal_expansion * beam.gradient_y;
+  if (frame.swapped) return {about_z, -about_y};
+  return {about_y, about_z};
 }
 
 /// Displacement (R − I) r of the end of a rigid arm r at a node at rest [m].
@@ -83,12 +86,11 @@ BeamStep step_at(const Beam& beam, const Beam::Frame& frame, const Vector3d& dra
       detail::lengths(drawn + (frame.offsets[1] - frame.offsets[0]), apart);
   const double change = beam.temperature_fraction * at.mean;
   const double l0 = beam.stress_free_length;
-  const std::array<double, 2> curvature = curvature_per_kelvin(beam);
+  const std::array<double, 2> curvature = curvature_per_kelvin(beam, frame);
   state.along = length.along;
   state.stretch = detail::stretch(length.growth, length.drawn, l0, beam.thermal_expansion, change);
   state.free_length = thermal::length(l0, beam.thermal_expansion, change);
   state.curvature = {curvature[0] * at.gradient, curvature[1] * at.gradient};
-  if (frame.swapped) state.curvature = {state.curvature[1], -state.curvature[0]};
   return {frame.beam, state};
 }
 
@@ -326,7 +328,7 @@ ElementScale Beam::scale(const Frame& frame, const std::vector<Vector3d>& drawn)
   const bool by_gradient = gradient > std::abs(temperature_fraction);
   return {std::max(axial, bending), axial * std::abs(length - l0),
           std::abs(thermal_expansion) * std::max(gradient, std::abs(temperature_fraction)),
-          by_gradient ? gradient_program : program};
+          by_gradient ? gradient_program : program, bending * l0};
 }
 
 void Beam::scale_misfit(const Model& model, double fraction) {
@@ -372,7 +374,7 @@ void Beam::thermal_rate(const Frame& frame, const ElementState& state,
                         const std::vector<double>& program_rates, ElementWriter& writer) const {
   const double growth =
       stress_free_length * thermal_expansion * temperature_fraction * program_rates[index(program)];
-  std::array<double, 2> bend = curvature_per_kelvin(*this);
+  std::array<double, 2> bend = curvature_per_kelvin(*this, frame);
   for (double& one : bend) one *= program_rates[index(gradient_program)];
   if (growth == 0.0 && bend[0] == 0.0 && bend[1] == 0.0) return;
   const BeamStep step = step_at(*this, frame, state);
@@ -423,7 +425,7 @@ void Beam::check_state(const Frame& frame, const ElementState& state) const {
 
 double Beam::thermal_work(const Frame& frame, const detail::ThermalStep& step) const {
   const double expansion = stress_free_length * thermal_expansion * temperature_fraction;
-  const std::array<double, 2> bend = curvature_per_kelvin(*this);
+  const std::array<double, 2> bend = curvature_per_kelvin(*this, frame);
   if (expansion == 0.0 && bend[0] == 0.0 && bend[1] == 0.0) return 0.0;
   const detail::Way& way = step.way;
   const auto ends = [&](const Eigen::VectorXd& z) {

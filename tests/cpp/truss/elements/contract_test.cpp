@@ -35,8 +35,8 @@ auto derivative(Function&& at, double h) {
 }
 
 /// Step of the differences [m]. The samples have lengths of about 1 m, so the truncation error is
-/// about 1e-13 of the largest derivative and the rounding error about 1e-12 of the value.
-constexpr double step = 5e-4;
+/// about 1e-14 of the largest derivative and the rounding error about 2e-12 of the value.
+constexpr double step = 2.5e-4;
 /// Relative tolerance for derivatives and for values per metre: truncation plus rounding error,
 /// times ten because directions have larger fifth derivatives.
 constexpr double of_differences = 1e-11;

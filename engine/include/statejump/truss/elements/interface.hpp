@@ -64,6 +64,7 @@ struct ElementScale {
   double force = 0.0;              ///< Of its misfit in the reference configuration [N].
   double strain_per_kelvin = 0.0;  ///< Free thermal strain [1/K], absolute.
   int program = -1;                ///< Its temperature program; −1: none.
+  double by_rotation = 0.0;        ///< Force by the rotation of a node by 1 rad [N].
 };
 
 /// Dashpot between two nodes of an element in motion.

@@ -97,10 +97,16 @@ def bend_by_weight(deck: Deck) -> None:
     """Add the moments with which the ends of beams move as under a weight along the beams. Their forces are half of the
     weight at each end."""
     for bar in deck.bars:
-        first, second = (np.array(deck.nodes[end]) for end in bar.nodes)
+        first, second = deck.ends_of(bar)
         axes = triad(first, second, bar.bending.axis_y) if bar.bending else None
-        if axes is None or not bar.density or not bar.area:
+        if axes is None or not bar.density or not bar.area or bar.bending is None:
             continue
+        if bar.bending.offsets.any():
+            deck.refuse(f"{bar.kind} offset", "weight_beside_nodes", 0)
+        if any(released & {"Ry", "Rz"} for released in bar.bending.released):
+            if not all({"Ry", "Rz"} <= released for released in bar.bending.released):
+                deck.refuse(f"{bar.kind} weight", "load_on_released_beam", 0)
+            continue  # a beam on two hinges passes half of its weight to each node, without moments
         weight = np.array(deck.gravity) * bar.density * bar.area
         found = nodal_loads(Load(0.0, 1.0, weight, weight), float(np.linalg.norm(second - first)), axes, (0.0, 0.0))
         for node, moment in zip(bar.nodes, found[1::2]):
@@ -119,8 +125,7 @@ def beam_keys(deck: Deck, of: Bar, length: float, peak: float) -> dict[str, Any]
     section, angle = bending.section.turned()
     if angle and bending.section.shear_factors[0] != bending.section.shear_factors[1]:
         deck.refuse(of.kind, "shear_beside_axes", 0, "SHEAR")
-    first, second = (np.array(deck.nodes[end]) for end in of.nodes)
-    axes = triad(first, second, bending.axis_y)
+    axes = triad(*deck.ends_of(of), bending.axis_y)
     direction = bending.axis_y
     if axes is not None and angle:
         direction = axes[1] * np.cos(angle) + axes[2] * np.sin(angle)
@@ -132,10 +137,25 @@ def beam_keys(deck: Deck, of: Bar, length: float, peak: float) -> dict[str, Any]
         "axis_y": [float(part) / size + 0.0 for part in direction],
     }
     made.update(_shear(deck, of, section, bending.shear_modulus))
+    made.update(_ends(deck, of, angle, length))
     if any(bending.gradient):
         along_y, along_z = bending.gradient
         turned = [along_y * np.cos(angle) + along_z * np.sin(angle), along_z * np.cos(angle) - along_y * np.sin(angle)]
         made["gradient_per_m"] = [float(value) / length / peak + 0.0 for value in turned]
+    return made
+
+
+def _ends(deck: Deck, of: Bar, angle: float, length: float) -> dict[str, Any]:
+    """Return the keys of released ends and of offsets."""
+    assert of.bending is not None
+    made: dict[str, Any] = {}
+    for key, released, offset in zip(("first", "second"), of.bending.released, of.bending.offsets):
+        if angle and len(released & {"Ry", "Rz"}) == 1:
+            deck.refuse(of.kind, "release_beside_axes", 0, "RELEASE")
+        if released:
+            made[f"released_{key}"] = sorted(released)
+        if offset.any():
+            made[f"offset_{key}_m"] = [float(part) * length for part in offset]
     return made
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import atan2, cos, sin
 
 import numpy as np
@@ -53,6 +53,8 @@ class Bending:
     :param shear_modulus: None: the beam has no stiffness in torsion and is rigid in shear
     :param stations: sections by fraction of the length, from 0 to 1; a uniform beam has at most one
     :param gradient: temperature per length along y and z of the section
+    :param released: what each end does not transmit to its node: Fx, Rx, Ry, Rz in the axes of the beam
+    :param offsets: from the nodes to the ends of the beam (2, 3), in the basic system
     """
 
     section: Section
@@ -60,6 +62,16 @@ class Bending:
     shear_modulus: float | None = None
     stations: tuple[tuple[float, Section], ...] = ()
     gradient: tuple[float, float] = (0.0, 0.0)
+    released: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
+    offsets: np.ndarray = field(default_factory=lambda: np.zeros((2, 3)))
+
+    @property
+    def turned_ends(self) -> tuple[bool, bool]:
+        """Whether the rotation of each node has an effect: its end transmits a moment or has an offset."""
+        torsion = {"Rx"} & (self.released[0] | self.released[1])
+        first, second = (bool({"Rx", "Ry", "Rz"} - released - torsion or offset.any())
+                         for released, offset in zip(self.released, self.offsets))
+        return first, second
 
 
 def across(first: np.ndarray, second: np.ndarray) -> np.ndarray:

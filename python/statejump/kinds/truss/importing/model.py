@@ -309,7 +309,15 @@ class Deck:
 
     def bent(self) -> set[str]:
         """Return the nodes at which beams end that bend."""
-        return {end for bar in self.bars if bar.bending for end in bar.nodes}
+        return {end for bar in self.bars if bar.bending
+                for end, turned in zip(bar.nodes, bar.bending.turned_ends) if turned}
+
+    def ends_of(self, bar: Bar) -> tuple[np.ndarray, np.ndarray]:
+        """Return the positions of both ends of a bar or beam; those of a beam may be beside its nodes."""
+        first, second = (np.array(self.nodes[end]) for end in bar.nodes)
+        if bar.bending is None:
+            return first, second
+        return first + bar.bending.offsets[0], second + bar.bending.offsets[1]
 
     def load(self, name: str, force: Sequence[float], line: int = 0, card: str = "force") -> None:
         """Add a force on a node."""

@@ -9,7 +9,7 @@ import numpy as np
 from statejump.kinds.truss.importing.bending import Bending, Section, across, triad
 from statejump.kinds.truss.importing.model import Bar, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
-from statejump.kinds.truss.importing.nastran.reader import Material, Property, Reader
+from statejump.kinds.truss.importing.nastran.reader import Ends, Material, Property, Reader
 from statejump.kinds.truss.importing.supports import add_spring, is_held
 
 SAME = 1e-6  # relative tolerance of offsets: cards have seven digits
@@ -43,8 +43,8 @@ def bar(reader: Reader, card: Card) -> None:
     made = Bar(name, ends, card.name, bends=beam)
     bends = beam and reader.bends()
     if bends:
-        _check_ends(reader, card)
         reader.axes_y[name] = _axis_y(reader, card, ends[0])
+        reader.ends[name] = _ends(reader, card, ends)
     elif beam:
         if any(card.fields[10:16]):
             made.lengthened = _lengthened(reader, card, ends)
@@ -58,13 +58,19 @@ def bar(reader: Reader, card: Card) -> None:
     reader.bars[name] = (card.line, made, reader.whole(card, 1, default))
 
 
-def _check_ends(reader: Reader, card: Card) -> None:
-    """Refuse released ends and offsets of a beam."""
+RELEASES = {"1": "Fx", "4": "Rx", "5": "Ry", "6": "Rz"}  # by pin flag
+
+
+def _ends(reader: Reader, card: Card, ends: tuple[str, str]) -> Ends:
+    """Return what the ends of a beam do not transmit, and their offsets from the nodes."""
+    found = []
     for place, field in ((8, "PA"), (9, "PB")):
-        if set(card[place].replace(" ", "")) - {"0"}:
-            reader.deck.refuse(f"{card.name}.{field}", "released_end", card.line)
-    if any(reader.number(card, place, 0.0) for place in range(10, 16)):
-        reader.deck.refuse(f"{card.name}.W1A-W3B", "offset", card.line)
+        flags = _flags(reader, card, place)
+        if flags & {"2", "3"}:
+            reader.deck.refuse(f"{card.name}.{field}", "released_shear", card.line)
+        found.append(frozenset(RELEASES[flag] for flag in flags if flag in RELEASES))
+    # A force or torsion that one end releases is zero, so the other end need not release it.
+    return (found[0], found[1] - (found[0] & {"Fx", "Rx"})), _offsets(reader, card, ends)
 
 
 def _axis_y(reader: Reader, card: Card, first: str) -> np.ndarray:
@@ -83,23 +89,37 @@ def _axis_y(reader: Reader, card: Card, first: str) -> np.ndarray:
     return np.asarray(vector @ frame.directions(reader.deck.nodes[first]))
 
 
-def _releases(reader: Reader, card: Card, place: int) -> bool:
-    """Return whether a pin flag releases the axial force. The other flags release what a pin-jointed bar does not have:
-    2 and 3 shear forces, 4 to 6 moments."""
+def _flags(reader: Reader, card: Card, place: int) -> set[str]:
+    """Return the pin flags of an end."""
     flags = card[place].replace(" ", "")
     if set(flags) - set("0123456"):
         raise reader.deck.fail(card.line, "deck_bad_number", text=quoted(flags), wanted="pin flags of 1 to 6")
-    return "1" in flags
+    return set(flags) - {"0"}
+
+
+def _releases(reader: Reader, card: Card, place: int) -> bool:
+    """Return whether a pin flag releases the axial force. The other flags release what a pin-jointed bar does not have:
+    2 and 3 shear forces, 4 to 6 moments."""
+    return "1" in _flags(reader, card, place)
+
+
+def _offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> np.ndarray:
+    """Return the vectors (2, 3) from the nodes to the ends of a bar, in the basic system."""
+    found, kinds = [], (card[7].upper() or "GGG").ljust(3, "G")[1:]
+    for place, end, kind in zip((10, 13), ends, kinds):
+        given = np.array([reader.number(card, at, 0.0) for at in range(place, place + 3)])
+        if kind == "O" and given.any():
+            reader.deck.refuse(f"{card.name}.W1A-W3B", "offset_in_element", card.line)
+        frame = reader.frames[reader.displacement_frame[end] if kind == "G" else "0"]
+        found.append(given @ frame.directions(reader.deck.nodes[end]))
+    return np.array(found)
 
 
 def _lengthened(reader: Reader, card: Card, ends: tuple[str, str]) -> float:
     """Return the ratio of the length of a bar with offsets to the distance of its nodes. Offsets that rotate the bar
     are refused. Equal offsets shift the bar, which has no effect on nodes without rotations."""
-    offsets, kinds = [], (card[7].upper() or "GGG").ljust(3, "G")[1:]
-    for place, end, kind in zip((10, 13), ends, kinds):
-        given = np.array([reader.number(card, at, 0.0) for at in range(place, place + 3)])
-        frame = reader.frames[reader.displacement_frame[end] if kind == "G" else "0"]
-        offsets.append(given @ frame.directions(reader.deck.nodes[end]))
+    kinds = (card[7].upper() or "GGG").ljust(3, "G")[1:]
+    offsets = _offsets(reader, card, ends)
     between = np.subtract(reader.deck.nodes[ends[1]], reader.deck.nodes[ends[0]])
     longer, distance = offsets[1] - offsets[0], np.linalg.norm(between)
     if kinds[0] == kinds[1] and np.linalg.norm(longer) <= SAME * np.linalg.norm(offsets):
@@ -317,13 +337,16 @@ def _bend(reader: Reader, line: int, of: Bar, section: Property, material: Mater
         return
     if any(one.eccentric for _, one in stations):
         reader.deck.refuse(f"{of.kind} {quoted('section')[1:-1]}", "neutral_axis", line, "PBEAML.NEUTRAL")
-    axis = reader.axes_y[of.name]
-    first, second = (np.array(reader.deck.nodes[end]) for end in of.nodes)
+    axis, (released, offsets) = reader.axes_y[of.name], reader.ends[of.name]
+    first, second = (np.array(reader.deck.nodes[end]) + offset for end, offset in zip(of.nodes, offsets))
+    if len(stations) > 1 and (any(released) or offsets.any()):
+        reader.deck.refuse(of.kind, "ends_of_tapered_beam", line, "TAPER")
     if triad(first, second, axis) is None and (
             np.any(axis) or stations[0][1].moments[0] != stations[0][1].moments[1]):
         raise reader.deck.fail(line, "deck_bad_geometry", f"{of.kind} {of.name}",
                                problem="its direction of axis y is missing or along the beam")
-    of.bending = Bending(stations[0][1], axis if np.any(axis) else across(first, second), shear, stations)
+    of.bending = Bending(stations[0][1], axis if np.any(axis) else across(first, second), shear, stations,
+                         released=released, offsets=offsets)
 
 
 def _heat(reader: Reader, of: Bar) -> None:

@@ -187,7 +187,10 @@ def _load_beam(reader: Reader, card: Card, of: Bar, load: Load) -> None:
     if len(bending.stations) > 1:
         deck.refuse(card.name, "load_on_tapered_beam", card.line)
         return
-    first, second = (np.array(deck.nodes[end]) for end in of.nodes)
+    if any(bending.released) or bending.offsets.any():
+        deck.refuse(card.name, "load_on_released_beam", card.line)
+        return
+    first, second = deck.ends_of(of)
     section, angle = bending.section.turned()
     axes = triad(first, second, bending.axis_y)
     if axes is None or of.young_modulus is None:

@@ -171,9 +171,9 @@ def hold_singular(reader: Reader) -> None:
     bent = {end for bar in deck.bars if bar.bends and not bar.bending for end in bar.nodes}
     for bar in deck.bars:
         if bar.bending:
-            blocks = node_stiffness(bar, *(np.array(deck.nodes[end]) for end in bar.nodes))
-            for end in bar.nodes:
-                for of, block in zip((stiffness, rotational), blocks):
+            blocks = node_stiffness(bar, *deck.ends_of(bar))
+            for end, turned in zip(bar.nodes, bar.bending.turned_ends):
+                for of, block in zip((stiffness, rotational) if turned else (stiffness,), blocks):
                     of[end] = of.get(end, np.zeros((3, 3))) + block
     pairs = [bar.nodes for bar in deck.bars if not bar.bending]
     pairs += [(spring.first, spring.second) for spring in deck.springs if spring.second]

@@ -14,6 +14,10 @@ from statejump.kinds.truss.importing.model import Bar, Deck, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card, number_of
 
 
+# Of a beam: what each end does not transmit to its node, and the vectors (2, 3) from the nodes to the ends.
+Ends = tuple[tuple[frozenset[str], frozenset[str]], np.ndarray]
+
+
 @dataclass
 class Material:
     """MAT1; None: the card does not say."""
@@ -64,6 +68,7 @@ class Reader:
     component_cards: dict[str, Card] = field(default_factory=dict)  # the first of each node
     bars: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, property
     axes_y: dict[str, np.ndarray] = field(default_factory=dict)  # direction of axis y of the section, by beam
+    ends: dict[str, Ends] = field(default_factory=dict)  # of beams
     beam_temperature: dict[str, tuple[Card, float, tuple[float, float]]] = field(default_factory=dict)  # TEMPRB
     mass_arms: list[tuple[Card, str, float, np.ndarray]] = field(default_factory=list)  # CONM2: card, node, mass, arm
     torsion: dict[str, float] = field(default_factory=dict)  # torsion constants of CONROD

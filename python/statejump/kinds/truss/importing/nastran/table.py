@@ -35,7 +35,7 @@ CARDS: dict[str, Card] = table(
     used("CTUBE", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CONROD", "link; beam with torsion only, between ends of beams", "EID G1 G2 MID A J C NSM",
          idle={"C": SECTION_POINTS}),
-    *(used(name, f"beam; without second moments and torsion constant a link; no pin flags and offsets{AS_BARS}",
+    *(used(name, f"beam; without second moments and torsion constant a link; no pin flags 2 and 3{AS_BARS}",
            f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
            refused={more.strip(): WARPING} if more else {})
       for name, more in (("CBAR", ""), ("CBEAM", " SA SB"))),
