@@ -162,7 +162,7 @@ def _check_unused(deck: Deck, used: set[str]) -> None:
 def _dimension(deck: Deck, used: set[str]) -> int:
     heights = [deck.nodes[node][2] for node in used]
     size = max((abs(value) for node in used for value in deck.nodes[node]), default=0.0)
-    if deck.bent():  # beams rotate out of the plane, where nothing holds them
+    if any(bar.bending for bar in deck.bars):  # beams rotate out of the plane, where nothing holds them
         return 3
     if (max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
             or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
