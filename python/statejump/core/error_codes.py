@@ -611,6 +611,11 @@ CODES: dict[str, Code] = {
         cause="{model} has no rotations of nodes",
         remedy="run its quasi-static path: 'statejump reduced'",
     ),
+    "joint_not_in_motion": Code(
+        what="{part} has no law of motion",
+        cause="it is a joint of quasi-static paths and of modes",
+        remedy="run its quasi-static path: 'statejump reduced'",
+    ),
     "no_moving_mass": Code(
         what="nothing that moves has a mass", remedy="give links, beams or nodes a density or a mass",
     ),

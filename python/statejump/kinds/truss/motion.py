@@ -137,6 +137,10 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
     truss, samples = case.resolve(), case.samples_per_cycle
     if truss.nodes.fixed[:, :truss.dimension].all():
         raise StatejumpError(code="no_free_dof", case=case.name)
+    for joint in JOINTS:
+        if not joint.in_motion and truss.joints[joint.section].names:
+            raise StatejumpError(code="joint_not_in_motion", case=case.name,
+                                 part=f"{joint.section} {truss.joints[joint.section].names[0]!r}")
     for joint in JOINTS if case.motion.start != "drawn" else ():
         unable = joint.path_refuses(truss.joints[joint.section])
         if unable is not None:

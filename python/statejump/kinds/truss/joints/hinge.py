@@ -65,6 +65,7 @@ class HingeType(AboutAxis[Hinge, Hinges], JointType[Hinge, Hinges]):
         ItemColumn("beam_hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
     )
     varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
+    in_motion = False
     not_in_dem = "rotates its nodes, the DEM has no rotations of nodes yet"
 
     def check_references(self, item: Hinge, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:

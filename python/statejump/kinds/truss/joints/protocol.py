@@ -113,6 +113,7 @@ class PartType(Generic[ItemType, ArraysType]):
     Arrays: ClassVar[type[Any]]  # dataclass of arrays: names, and one field per key that models use
     columns: ClassVar[tuple[ItemColumn, ...]] = ()  # of a joint first its position: a slide, an offset, a rotation
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
+    in_motion: ClassVar[bool] = True  # whether the reduced dynamics supports the type
     not_in_dem: ClassVar[str] = ""  # reason why the DEM refuses the type; empty: the DEM supports it
 
     @property
