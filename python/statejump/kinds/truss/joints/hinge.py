@@ -118,7 +118,7 @@ class HingeType(AboutAxis[Hinge, Hinges], JointType[Hinge, Hinges]):
         )
 
     def add_friction(self, loads: Loads, joints: Hinges, state: Mapping[str, np.ndarray]) -> None:
-        raise NotImplementedError("models without rotations of nodes refuse hinges")
+        """Add nothing: the answers, which need it, refuse cases with hinges."""
 
     def carried_friction(self, joints: Hinges, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         rotation = at["beam_hinge_rotation_rad"]
