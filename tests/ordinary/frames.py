@@ -137,7 +137,7 @@ def main() -> int:
     given.add_argument("--seed", type=int, default=1)
     given.add_argument("--families", nargs="+", choices=list(structures.FAMILIES))
     given.add_argument("--most-nodes", type=int, default=60)
-    given.add_argument("--changes", type=int, default=0, help="how many changes of order, names, units, … of each frame")
+    given.add_argument("--changes", type=int, default=0, help="how many changes of order, names, units of each")
     given.add_argument("--out", type=Path, help="CSV file with a row per frame")
     asked = given.parse_args()
     rows = []

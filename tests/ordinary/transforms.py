@@ -29,7 +29,8 @@ UNITS = {
     "dimensions_m": (1, 0), "gradient_per_m": (-1, 0),
 }
 CONTACT_MODULUS_PA = 70e9  # default of joints with contacts
-VECTORS = {"node": ("position_m", "force_N", "guide_normal"), "slider": ("axis",), "beam": ("axis_y",), "iwan_joint": ("axis",)}
+VECTORS = {"node": ("position_m", "force_N", "guide_normal"), "slider": ("axis",), "beam": ("axis_y",),
+           "iwan_joint": ("axis",)}
 AXIAL = ("revolute", "torsion_spring", "latch_hinge")  # axes about which something turns
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masses of nodes. Half of the mass of a link or beam is lumped at each end. If one end of a link is fixed, the other end
-gets a third of the mass, which is exact for a uniform rod on a pin."""
+"""Masses of nodes. Half of the mass of a link or beam is lumped at each end. If one end of a link is fixed, the other
+end gets a third of the mass, which is exact for a uniform rod on a pin."""
 from __future__ import annotations
 
 import numpy as np
