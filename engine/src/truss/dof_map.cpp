@@ -25,30 +25,26 @@ constexpr double least_motion = 1e-9;
 std::vector<bool> rotating_nodes(const Model& model) {
   const auto nodes = static_cast<int>(model.nodes.size());
   std::vector<bool> rotates(model.nodes.size(), false);
+  const auto rotate = [&](int site) {
+    if (site >= nodes) rotates[static_cast<std::size_t>(site - nodes)] = true;
+  };
   const auto ask = [&]<class Type>(const std::vector<Type>& elements) {
     if constexpr (Type::dofs_per_node == 6) {
       for (const Type& one : elements) {
-        for (const int site : one.frame(model).nodes) {
-          if (site >= nodes) rotates[static_cast<std::size_t>(site - nodes)] = true;
-        }
+        for (const int site : one.frame(model).nodes) rotate(site);
       }
     }
   };
   std::apply([&](const auto&... lists) { (ask(lists), ...); }, model.lists());
   for (const Joint& joint : model.joints) {
-    const auto rotate = [&](int site) {
-      if (site >= nodes) rotates[static_cast<std::size_t>(site - nodes)] = true;
-    };
-    std::visit(
-        [&]<class Type>(const Type& one) {
-          if constexpr (requires { one.ties(model); }) {
-            for (const int site : one.frame(model).nodes) rotate(site);
-            for (const Constraint& tie : one.ties(model)) {
-              for (const ConstraintTerm& term : tie.terms) rotate(term.node);
-            }
-          }
-        },
-        joint);
+    if (!has_ties(joint)) continue;
+    for (const int site :
+         std::visit([&](const auto& one) { return one.frame(model).nodes; }, joint)) {
+      rotate(site);
+    }
+    for (const Constraint& tie : ties_of(joint, model)) {
+      for (const ConstraintTerm& term : tie.terms) rotate(term.node);
+    }
   }
   return rotates;
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 #include <utility>
-#include <variant>
 
 namespace statejump::truss::detail {
 
@@ -133,13 +132,7 @@ Elimination eliminate(const Model& model) {
   Eliminating made(model);
   for (std::size_t i = 0; i < model.constraints.size(); ++i) made.add(static_cast<int>(i));
   for (const Joint& joint : model.joints) {
-    std::visit(
-        [&]<class Type>(const Type& one) {
-          if constexpr (requires { one.ties(model); }) {
-            for (const Constraint& tie : one.ties(model)) made.add(tie);
-          }
-        },
-        joint);
+    for (const Constraint& tie : ties_of(joint, model)) made.add(tie);
   }
   return std::move(made).take();
 }

@@ -141,19 +141,6 @@ void check_constraint(const Constraint& constraint, const Model& model) {
   }
 }
 
-/// Whether joints constrain displacements linearly.
-bool has_ties(const Model& model) {
-  return std::any_of(model.joints.begin(), model.joints.end(), [](const Joint& joint) {
-    return std::visit(
-        []<class Type>(const Type& one) {
-          return requires(const Model& of) {
-            one.ties(of);
-          };
-        },
-        joint);
-  });
-}
-
 /// Rejects a joint that constrains its nodes along a direction in which supports or constraints
 /// already prevent their relative motion. Otherwise two forces would constrain one direction.
 void check_held_directions(const Model& model) {
@@ -210,7 +197,9 @@ void Model::validate() const {
         joint);
   }
   for (const Constraint& constraint : constraints) check_constraint(constraint, *this);
-  if (!constraints.empty() || has_ties(*this)) check_held_directions(*this);
+  if (!constraints.empty() || std::any_of(joints.begin(), joints.end(), has_ties)) {
+    check_held_directions(*this);
+  }
 }
 
 std::vector<int> Model::redundant_constraints() const {
@@ -220,6 +209,25 @@ std::vector<int> Model::redundant_constraints() const {
 double Model::lowest_strain(int program, double per_kelvin) const {
   const TemperatureRange range = range_of(programs[static_cast<std::size_t>(program)]);
   return std::min(per_kelvin * range.lowest, per_kelvin * range.highest);
+}
+
+bool has_ties(const Joint& joint) {
+  return std::visit(
+      []<class Type>(const Type& one) {
+        return requires(const Model& of) {
+          one.ties(of);
+        };
+      },
+      joint);
+}
+
+std::vector<Constraint> ties_of(const Joint& joint, const Model& model) {
+  return std::visit(
+      [&](const auto& one) -> std::vector<Constraint> {
+        if constexpr (requires { one.ties(model); }) return one.ties(model);
+        return {};
+      },
+      joint);
 }
 
 void measure_rotations(Model& model) {

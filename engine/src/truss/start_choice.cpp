@@ -2,6 +2,7 @@
 #include "start_choice.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -25,15 +26,9 @@ Joint without_friction(const Slider& joint) {
   return loose;
 }
 
-Joint without_friction(const LatchHinge& joint) {
-  LatchHinge loose = joint;
-  loose.friction_moment = 0.0;
-  loose.friction_stiffness = rigid;
-  return loose;
-}
-
-Joint without_friction(const Hinge& joint) {
-  Hinge loose = joint;
+template <class Type>
+requires std::derived_from<Type, HingeLaw<Type>> Joint without_friction(const Type& joint) {
+  Type loose = joint;
   loose.friction_moment = 0.0;
   loose.friction_stiffness = rigid;
   return loose;

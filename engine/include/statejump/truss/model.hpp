@@ -113,6 +113,11 @@ inline int rotation_site(const Model& model, int node) {
   return static_cast<int>(model.nodes.size()) + node;
 }
 
+/// Whether the type of a joint constrains displacements linearly.
+bool has_ties(const Joint& joint);
+/// The linear constraints of a joint's nodes; none for most types.
+std::vector<Constraint> ties_of(const Joint& joint, const Model& model);
+
 /// Sets Node::arm of all nodes that rotate.
 void measure_rotations(Model& model);
 

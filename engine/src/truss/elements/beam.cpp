@@ -67,21 +67,15 @@ std::array<double, 2> curvature_per_kelvin(const Beam& beam, const Beam::Frame& 
   return {about_y, about_z};
 }
 
-/// Displacement (R − I) r of the end of a rigid arm r at a node at rest [m].
-Vector3d swung(const kernel::Quaternion& rotation, const Vector3d& arm) {
-  const Vector3d once = 2.0 * rotation.vec().cross(arm);
-  return rotation.w() * once + rotation.vec().cross(once);
-}
-
 /// @param drawn from the first node to the second in the reference configuration [m]
 BeamStep step_at(const Beam& beam, const Beam::Frame& frame, const Vector3d& drawn,
                  const Moved& moved, const Temperatures& at) {
   kernel::BeamState state;
   state.first = kernel::rotation_of(moved.rotations[0]);
   state.second = kernel::rotation_of(moved.rotations[1]);
-  const Vector3d apart =
-      moved.places[1] - moved.places[0] +
-      (swung(state.second, frame.offsets[1]) - swung(state.first, frame.offsets[0]));
+  const Vector3d apart = moved.places[1] - moved.places[0] +
+                         (kernel::moved_by(state.second, frame.offsets[1]) -
+                          kernel::moved_by(state.first, frame.offsets[0]));
   const detail::Lengths length =
       detail::lengths(drawn + (frame.offsets[1] - frame.offsets[0]), apart);
   const double change = beam.temperature_fraction * at.mean;

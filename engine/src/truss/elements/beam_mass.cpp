@@ -2,22 +2,12 @@
 #include <Eigen/Core>
 #include <utility>
 
+#include "statejump/kernel/rotation.hpp"
 #include "statejump/truss/elements/beam.hpp"
 #include "statejump/truss/motion.hpp"
 #include "truss/elements/writer.hpp"
 
 namespace statejump::truss {
-
-namespace {
-
-/// The matrix S of s × v = S v.
-Eigen::Matrix3d cross(const Eigen::Vector3d& s) {
-  Eigen::Matrix3d made;
-  made << 0.0, -s.z(), s.y(), s.z(), 0.0, -s.x(), -s.y(), s.x(), 0.0;
-  return made;
-}
-
-}  // namespace
 
 /// Translations are linear along the beam, so the mass matrix of both ends is m/6 [2 1; 1 2], as
 /// that of a bar. Sections rotate with the ends, half of the beam with each. The matrix is that of
@@ -33,7 +23,7 @@ void Beam::mass(const Frame& frame, const Inertia& inertia, std::size_t i,
   if (frame.swapped) std::swap(moments[1], moments[2]);
   std::array<Eigen::Matrix3d, 2> by_rotation;  // of the displacement of an end
   for (std::size_t end = 0; end < 2; ++end) {
-    by_rotation[end] = -cross(frame.offsets[end]) / frame.arms[end];
+    by_rotation[end] = -kernel::skew(frame.offsets[end]) / frame.arms[end];
   }
   for (std::size_t a = 0; a < 2; ++a) {
     const int turning = frame.nodes[2 + a];

@@ -4,10 +4,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "statejump/kernel/require.hpp"
 #include "statejump/kernel/rotation.hpp"
 #include "statejump/truss/model.hpp"
+#include "truss/joints/hinge_law.hpp"
 #include "truss/joints/writer.hpp"
 #include "truss/parts.hpp"
 
@@ -38,31 +40,6 @@ Relative relative(const Trial& trial) {
   const kernel::Quaternion second = kernel::rotation_of(rotation_vector(trial, of_second));
   const kernel::Quaternion both = first.conjugate() * second;
   return {first, both.w(), both.vec()};
-}
-
-double rotation_of(const Hinge& hinge, const Trial& trial) {
-  const Relative at = relative(trial);
-  return 2.0 * std::atan2(at.v.dot(hinge.axis), at.w);
-}
-
-/// Lever that converts a moment to a force [m].
-double radius_of(const Trial& trial) {
-  return trial.frame.arms[of_first];
-}
-
-/// Elastic rotation of sticking friction [rad].
-double bend(const Hinge& hinge, const Trial& trial) {
-  return radius_of(trial) * trial.force[0] / hinge.friction_stiffness;
-}
-
-/// Slipped part of the rotation [rad].
-double slipped(const Hinge& hinge, const Trial& trial) {
-  return rotation_of(hinge, trial) - bend(hinge, trial);
-}
-
-/// Rotation beyond the play [rad].
-double beyond_play(const Hinge& hinge, double rotation) {
-  return rotation - std::clamp(rotation, -hinge.deadband, hinge.deadband);
 }
 
 /// Gradient of a function of the relative rotation by the relative spin, in axes of the first node,
@@ -167,26 +144,14 @@ class HingeWriter {
 
 std::span<const Parameter<Hinge>> Hinge::parameters() {
   using H = Hinge;
-  static const Parameter<H> table[] = {
+  static const std::vector<Parameter<H>> table = detail::with_hinge_law<H>({
       {"nodes", "first node", "-", Allowed::node, "the case's nodes", &H::first, 0, 2},
       {"nodes", "second node", "-", Allowed::node, "the case's nodes", &H::second, 1, 2},
-      {"deadband_rad", "deadband", "rad", Allowed::not_negative, "the case", &H::deadband},
-      {"stiffness_N_m_per_rad", "stiffness", "N m/rad", Allowed::not_negative, "the case",
-       &H::stiffness},
-      {"friction_moment_N_m", "friction_moment", "N m", Allowed::not_negative, "the case",
-       &H::friction_moment},
-      {"friction_stiffness_N_m_per_rad", "friction_stiffness", "N m/rad",
-       Allowed::positive_or_infinite, "the case", &H::friction_stiffness},
-      {"preload_moment_N_m", "preload_moment", "N m", Allowed::finite, "the case",
-       &H::preload_moment},
-      {"axis", "axis", "-", Allowed::direction, "the case", &H::axis},
-  };
+  });
   return table;
 }
 
 std::span<const Output> Hinge::outputs() {
-  // Rotation of the second node against the first; moment against it (preload, stiffness and
-  // friction).
   static const Output table[] = {{"beam_hinge_rotation_rad", 1}, {"beam_hinge_moment_N_m", 1}};
   return table;
 }
@@ -240,34 +205,13 @@ std::vector<Constraint> Hinge::ties(const Model&) const {
 }
 
 void Hinge::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const {
-  const double rotation = rotation_of(*this, trial);
-  const double radius = radius_of(trial);
-  const double force = trial.force[0];
-  const double moment = elastic_moment(rotation) + radius * force;
-  const double tangent = std::abs(rotation) < deadband ? 0.0 : stiffness;
+  const Law law = evaluate_law(trial, status, writer);
+  const double radius = law.radius;
   const Relative at = relative(trial);
   const Gradient about = of_rotation(at, axis);
   HingeWriter write(trial, at, writer);
-  writer.carries(force);
-  writer.carries(moment / radius);
-  double corner = 0.0;
-  double sticks = 0.0;
-  switch (status) {
-    case JointStatus::slip_plus:
-    case JointStatus::slip_minus: {
-      const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
-      writer.balance(0, force - sense * friction_moment / radius);
-      corner = 1.0;
-      break;
-    }
-    default:
-      writer.closure(0, radius * (slipped(*this, trial) - trial.history[0]));
-      corner = -radius * radius / friction_stiffness;
-      sticks = radius;
-  }
-  writer.corner(0, 0, corner);
-  write.row(0, about, sticks, radius);
-  write.moment(about, moment, tangent);
+  write.row(0, about, law.by_row, radius);
+  write.moment(about, law.moment, law.tangent);
   for (int k = 1; k < trial.frame.forces; ++k) {
     const Vector3d t = trial.frame.axes.col(k - 1);
     const Gradient tilt = of_tilt(at, t);
@@ -281,76 +225,19 @@ void Hinge::evaluate(const Trial& trial, JointStatus status, JointWriter& writer
   write.finish();
 }
 
-JointStatus Hinge::decide(const Trial& trial, JointStatus status) const {
-  const double force = trial.force[0];
-  if (status == JointStatus::stick) {
-    const double bound = friction_moment / radius_of(trial) + trial.force_rounding;
-    return force > bound    ? JointStatus::slip_plus
-           : force < -bound ? JointStatus::slip_minus
-                            : status;
-  }
-  const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
-  const double slid = radius_of(trial) * (slipped(*this, trial) - trial.history[0]);
-  const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
-  if (sense * slid >= -rounding) return status;
-  if (friction_moment > 0.0) return JointStatus::stick;
-  // Without friction both directions of slip are admissible.
-  return sense > 0.0 ? JointStatus::slip_minus : JointStatus::slip_plus;
+double Hinge::rotation(const Trial& trial) const {
+  const Relative at = relative(trial);
+  return 2.0 * std::atan2(at.v.dot(axis), at.w);
 }
 
-void Hinge::begin(const Trial& trial, JointStatus, double* now) const {
-  now[0] = slipped(*this, trial);
+double Hinge::radius(const Trial& trial) const {
+  return trial.frame.arms[of_first];
 }
 
-void Hinge::commit(const Trial& trial, JointStatus status, double* after) const {
-  begin(trial, status, after);
+double Hinge::turning_ratio(const Trial& trial) const {
+  return std::max(1.0, radius(trial) / trial.frame.arms[of_second]);
 }
 
-double Hinge::slip(const Trial& trial, const double* after) const {
-  return radius_of(trial) * (after[0] - trial.history[0]);
-}
-
-double Hinge::dissipation(const Trial& trial, const double*, double slip) const {
-  return friction_moment / radius_of(trial) * std::abs(slip);
-}
-
-double Hinge::elastic_energy(const Trial& trial, const double* now) const {
-  const double rotation = rotation_of(*this, trial);
-  const double beyond = beyond_play(*this, rotation);
-  const double bent = std::isinf(friction_stiffness)
-                          ? 0.0
-                          : 0.5 * friction_stiffness * std::pow(rotation - now[0], 2);
-  return 0.5 * stiffness * beyond * beyond + preload_moment * rotation + bent;
-}
-
-double Hinge::elastic_moment(double rotation) const {
-  return preload_moment + stiffness * beyond_play(*this, rotation);
-}
-
-std::array<double, 2> Hinge::beyond_edges(const Trial& trial) const {
-  const double radius = radius_of(trial), rotation = rotation_of(*this, trial);
-  return {radius * (rotation - deadband), radius * (rotation + deadband)};
-}
-
-void Hinge::describe(const Trial& trial, double* outputs) const {
-  const double rotation = rotation_of(*this, trial);
-  outputs[0] = rotation;
-  outputs[1] = elastic_moment(rotation) + radius_of(trial) * trial.force[0];
-}
-
-double Hinge::slide_rounding(const Trial& trial, double length, double force) const {
-  // Equal rounding errors of both rotations, each measured at its own arm.
-  const double turned = length * std::max(1.0, radius_of(trial) / trial.frame.arms[of_second]);
-  return turned + std::pow(radius_of(trial), 2) * force / friction_stiffness;
-}
-
-bool Hinge::remembers_when(JointStatus before, JointStatus after) const {
-  return friction_moment > 0.0 && is_slip(before) &&
-         (after == JointStatus::stick || is_slip(after));
-}
-
-std::optional<LocalContact> Hinge::contact(const Trial& trial, JointStatus) const {
-  return LocalContact{0, -1, 1.0, friction_moment / radius_of(trial)};
-}
+template struct HingeLaw<Hinge>;
 
 }  // namespace statejump::truss

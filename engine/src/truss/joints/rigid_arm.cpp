@@ -118,8 +118,7 @@ void RigidArm::evaluate(const Trial& trial, JointStatus, JointWriter& writer) co
   const Vector3d turned = rotation_vector(trial);
   const Vector3d drawn = drawn_arm(trial);
   const kernel::Quaternion rotation = kernel::rotation_of(turned);
-  const Vector3d once = 2.0 * rotation.vec().cross(drawn);
-  const Vector3d swung = rotation.w() * once + rotation.vec().cross(once);
+  const Vector3d swung = kernel::moved_by(rotation, drawn);
   const Vector3d arm = drawn + swung;
   const Vector3d apart = trial.moved[at_node] - trial.moved[at_master] - swung;
   const Matrix3d spin = scale * kernel::spin_map(turned);

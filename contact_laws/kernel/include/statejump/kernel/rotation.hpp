@@ -55,6 +55,12 @@ inline Quaternion rotation_of(const Vector3& vector) {
   return {std::cos(0.5 * angle), part.x(), part.y(), part.z()};
 }
 
+/// (R - I) r of a rotation R, without the difference of two vectors.
+inline Vector3 moved_by(const Quaternion& rotation, const Vector3& r) {
+  const Vector3 once = 2.0 * rotation.vec().cross(r);
+  return rotation.w() * once + rotation.vec().cross(once);
+}
+
 /// (1 - (a/2) cot(a/2))/a²: the series is exact to rounding up to 1 rad.
 inline AngleCoefficient inverse_spin_coefficient(double angle) {
   // |B_2k|/(2k)!

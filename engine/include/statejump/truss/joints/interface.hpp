@@ -76,8 +76,8 @@ struct Trial {
   explicit Trial(const JointFrame& of) : frame(of) {}
 
   const JointFrame& frame;
-  std::array<Eigen::Vector3d, most_joint_nodes>
-      drawn;  ///< Positions of its nodes, ΔT = 0 [m]; rotations: 0.
+  /// Positions of its nodes in the reference configuration [m]; of rotations 0.
+  std::array<Eigen::Vector3d, most_joint_nodes> drawn;
   std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
   std::array<double, most_joint_forces> force{};        ///< Its unknowns [N].
   const double* history = nullptr;          ///< Memory of the joint at the start of the step.
@@ -202,6 +202,18 @@ concept JointType = requires(const Type& one, const Model& model, const Trial& t
   { one.least_slide() } -> std::same_as<double>;
   { one.seat(trial, 1.0, 1.0, 1.0) } -> std::same_as<Seat>;
   { one.jumps(trial, status) } -> std::same_as<bool>;
+};
+
+/// Members of a joint without temperature of its own, play and partial slip.
+struct PlainJoint {
+  void warm(const Trial&, JointStatus, double, JointWriter&) const {}
+  JointStatus settled(const Trial&, JointStatus status) const { return status; }
+  bool slips_smoothly() const { return false; }
+  double least_slide() const { return 0.0; }
+  JointStatus rest() const { return JointStatus::stick; }
+  bool has_play() const { return false; }
+  Seat seat(const Trial&, double, double, double) const { return {}; }
+  bool jumps(const Trial&, JointStatus) const { return false; }
 };
 
 // A natural map of Alart and Curnier [1] is piecewise smooth: λ − proj(λ − r g; bounds) equals r g

@@ -35,7 +35,7 @@ namespace statejump::truss {
 /// [1] D. J. Segalman, J. Appl. Mech. 72 (2005) 752-760.
 /// [2] D. J. Segalman, Sandia report SAND2002-3828 (2002): distances in a geometric series;
 /// Segalman puts a slider in the middle of each interval.
-struct IwanJoint {
+struct IwanJoint : PlainJoint {
   std::string name;
   int first = 0;
   int second = -1;  ///< −1: ground.
@@ -68,7 +68,6 @@ struct IwanJoint {
   void validate(const Model& model) const;
   JointFrame frame(const Model& model) const;
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
-  void warm(const Trial&, JointStatus, double, JointWriter&) const {}
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
   void commit(const Trial& trial, JointStatus status, double* after) const;
@@ -78,15 +77,8 @@ struct IwanJoint {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
-  JointStatus settled(const Trial&, JointStatus status) const { return status; }
   /// Its friction has no Coulomb cone, so the joint keeps its status in contact problems.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
-  bool slips_smoothly() const { return false; }
-  double least_slide() const { return 0.0; }
-  JointStatus rest() const { return JointStatus::stick; }
-  bool has_play() const { return false; }
-  Seat seat(const Trial&, double, double, double) const { return {}; }
-  bool jumps(const Trial&, JointStatus) const { return false; }
 };
 
 }  // namespace statejump::truss

@@ -18,7 +18,7 @@ struct Constraint;
 /// the master. Held rotations of the other node equal those of the master. Because all rotations
 /// start at zero, this is a linear constraint of the rotation vectors: exact for three held
 /// rotations. The joint has no energy and always the status `stick`.
-struct RigidArm {
+struct RigidArm : PlainJoint {
   std::string name;
   int master = 0;
   int node = 0;  ///< At the end of the arm.
@@ -39,7 +39,6 @@ struct RigidArm {
   JointFrame frame(const Model& model) const;
   std::vector<Constraint> ties(const Model& model) const;
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
-  void warm(const Trial&, JointStatus, double, JointWriter&) const {}
   JointStatus decide(const Trial&, JointStatus) const { return JointStatus::stick; }
   void begin(const Trial&, JointStatus, double*) const {}
   void commit(const Trial&, JointStatus, double*) const {}
@@ -49,14 +48,7 @@ struct RigidArm {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial&, double length, double) const { return length; }
   bool remembers_when(JointStatus, JointStatus) const { return false; }
-  JointStatus settled(const Trial&, JointStatus status) const { return status; }
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return std::nullopt; }
-  bool slips_smoothly() const { return false; }
-  double least_slide() const { return 0.0; }
-  JointStatus rest() const { return JointStatus::stick; }
-  bool has_play() const { return false; }
-  Seat seat(const Trial&, double, double, double) const { return {}; }
-  bool jumps(const Trial&, JointStatus) const { return false; }
 };
 
 }  // namespace statejump::truss
