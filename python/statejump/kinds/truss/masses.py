@@ -34,7 +34,7 @@ def beam_mass_kg(truss: ResolvedTruss) -> np.ndarray:
         if np.isnan(density):
             raise MissingKey("density_kg_per_m3", code="mass_of_moving_beam_missing", item=f"beam {name!r}",
                              case=truss.name)
-    return np.asarray(beams.density_kg_per_m3 * beams.cross_section_area_m2 * beams.stress_free_length_m)
+    return np.asarray(beams.mass_kg)
 
 
 def beam_moment_kg_m2(truss: ResolvedTruss) -> np.ndarray:

@@ -88,6 +88,11 @@ class Beams(EndsArrays):
     released_second: np.ndarray  # (k, 4) bool
 
     @property
+    def mass_kg(self) -> np.ndarray:
+        """Mass [kg]; NaN without a density."""
+        return np.asarray(self.density_kg_per_m3 * self.cross_section_area_m2 * self.stress_free_length_m)
+
+    @property
     def axial_stiffness_N(self) -> np.ndarray:
         """E A [N]."""
         return np.asarray(self.young_modulus_Pa * self.cross_section_area_m2)
@@ -136,6 +141,11 @@ def rotated_nodes(items: Iterable[Beam], dimension: int) -> set[str]:
             if axes - released - no_torsion or any(offset or ()):
                 found.add(node)
     return found
+
+
+def _between(position_m: np.ndarray, nodes: np.ndarray, first_m: np.ndarray, second_m: np.ndarray) -> np.ndarray:
+    """Return the vectors (k, 3) from the first to the second ends [m], which may be beside their nodes by offsets."""
+    return np.asarray(position_m[nodes[:, 1]] + second_m - position_m[nodes[:, 0]] - first_m)
 
 
 def _axes_y(items: Sequence[Beam], vectors_m: np.ndarray, known: References) -> np.ndarray:
@@ -246,7 +256,7 @@ class BeamType(BetweenNodes[Beam, Beams]):
     def derived(self, items: Sequence[Beam], known: References) -> dict[str, Any]:
         nodes = pairs(items, "nodes", known.node)
         offsets = [vectors(items, f"offset_{end}_m", known.dimension) for end in ("first", "second")]
-        between = known.position_m[nodes[:, 1]] + offsets[1] - known.position_m[nodes[:, 0]] - offsets[0]
+        between = _between(known.position_m, nodes, *offsets)
         sections = [properties(item) for item in items]
         young, poisson = column(items, "young_modulus_Pa"), column(items, "poisson_ratio")
         program, own = known.programs_of(items), known.program.of(items, "gradient_program")
@@ -274,8 +284,8 @@ class BeamType(BetweenNodes[Beam, Beams]):
         }
 
     def check_geometry(self, truss: ResolvedTruss, elements: Beams) -> None:
-        between = truss.nodes.position_m[elements.nodes[:, 1]] - truss.nodes.position_m[elements.nodes[:, 0]]
-        lengths = np.linalg.norm(between + elements.offset_second_m - elements.offset_first_m, axis=1)
+        between = _between(truss.nodes.position_m, elements.nodes, elements.offset_first_m, elements.offset_second_m)
+        lengths = np.linalg.norm(between, axis=1)
         if (lengths == 0).any():
             super().check_geometry(truss, elements)  # coincident nodes
         for index in np.flatnonzero(lengths == 0)[:1]:
@@ -294,10 +304,9 @@ class BeamType(BetweenNodes[Beam, Beams]):
                                  **self.where(elements.names[index]))
 
     def weights_N(self, elements: Beams, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
-        mass = elements.density_kg_per_m3 * elements.cross_section_area_m2 * elements.stress_free_length_m
         found = np.zeros((nodes, 3))
         for end in elements.nodes.T:  # half at each end
-            np.add.at(found, end, 0.5 * mass[:, None] * gravity_m_per_s2)
+            np.add.at(found, end, 0.5 * elements.mass_kg[:, None] * gravity_m_per_s2)
         return found
 
     def preload_N(self, elements: Beams) -> np.ndarray:

@@ -21,11 +21,10 @@ def node_stiffness(of: Bar, first: np.ndarray, second: np.ndarray) -> tuple[np.n
     """Return the stiffness matrices of displacements and of rotations of one node of a beam, over E A/l and E/l."""
     bending = of.bending
     assert bending is not None
-    section, angle = bending.section.turned()
-    axes = triad(first, second, bending.axis_y)
+    section, _, axes = bending.principal(first, second)
     if axes is None or not of.area:
         return np.zeros((3, 3)), np.zeros((3, 3))
-    y, z = axes[1] * np.cos(angle) + axes[2] * np.sin(angle), axes[2] * np.cos(angle) - axes[1] * np.sin(angle)
+    y, z = axes[1:]
     about_y, about_z = section.moments
     across = 12 / (of.area * float(np.sum((second - first) ** 2)))
     along = np.outer(axes[0], axes[0])
@@ -122,13 +121,10 @@ def beam_keys(deck: Deck, of: Bar, length: float, peak: float) -> dict[str, Any]
     """
     bending = of.bending
     assert bending is not None
-    section, angle = bending.section.turned()
+    section, angle, axes = bending.principal(*deck.ends_of(of))
     if angle and bending.section.shear_factors[0] != bending.section.shear_factors[1]:
         deck.refuse(of.kind, "shear_beside_axes", 0, "SHEAR")
-    axes = triad(*deck.ends_of(of), bending.axis_y)
-    direction = bending.axis_y
-    if axes is not None and angle:
-        direction = axes[1] * np.cos(angle) + axes[2] * np.sin(angle)
+    direction = axes[1] if axes is not None and angle else bending.axis_y
     size = float(np.linalg.norm(direction)) or 1.0
     moments, torsion = _stiff(deck, of, section, bending.shear_modulus)
     made: dict[str, Any] = {

@@ -73,6 +73,19 @@ class Bending:
                          for released, offset in zip(self.released, self.offsets))
         return first, second
 
+    def principal(self, first: np.ndarray, second: np.ndarray) -> tuple[Section, float, np.ndarray | None]:
+        """Return the section in principal axes, their angle from its own axes about x, and x, y, z as rows; None for
+        them if y is along the beam.
+
+        :param first: position of the first end of the beam
+        """
+        section, angle = self.section.turned()
+        own = triad(first, second, self.axis_y)
+        if own is None:
+            return section, angle, None
+        c, s = cos(angle), sin(angle)
+        return section, angle, np.array([own[0], c * own[1] + s * own[2], c * own[2] - s * own[1]])
+
 
 def across(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Return a direction across a beam, for sections without preferred axes."""

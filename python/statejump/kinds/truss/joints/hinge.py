@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import inf, pi
+from dataclasses import dataclass
+from math import pi
 from typing import Any, ClassVar
 
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import References, column, distances
-from statejump.kinds.truss.joints.protocol import (
-    USER, AboutAxis, ItemColumn, JointType, Loads, Symbol, count, scaled, spread,
-)
+from statejump.kinds.truss.arrays import distances
+from statejump.kinds.truss.joints.hinge_law import MOMENT, HingeLaw
+from statejump.kinds.truss.joints.protocol import USER, AboutAxis, ItemColumn, Loads, Symbol
 from statejump.kinds.truss.references import Around, known_nodes, wrong_ends
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import definition, numbers, parameter, texts
@@ -52,19 +51,18 @@ class Hinges:
     axis: np.ndarray  # (h, 3) unit; z in planar trusses
 
 
-class HingeType(AboutAxis[Hinge, Hinges], JointType[Hinge, Hinges]):
+class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
     """Hinges of beams, supported by the quasi-static solver."""
 
     section = "hinge"
-    turns = True
+    noun = "hinge"
     bends = True
     Item = Hinge
     Arrays = Hinges
     columns: ClassVar[tuple[ItemColumn, ...]] = (
         ItemColumn("beam_hinge_rotation_rad", "of the second node against the first"),
-        ItemColumn("beam_hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
+        ItemColumn("beam_hinge_moment_N_m", MOMENT),
     )
-    varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
     in_motion = False
     not_in_dem = "rotates its nodes, the DEM has no rotations of nodes yet"
 
@@ -73,12 +71,6 @@ class HingeType(AboutAxis[Hinge, Hinges], JointType[Hinge, Hinges]):
 
     def may_be_wrong_references(self, items: ItemColumns[Hinge], around: Around) -> np.ndarray:
         return wrong_ends(around.nodes.of(items, "nodes"), 2)
-
-    def derived(self, items: Sequence[Hinge], known: References) -> dict[str, Any]:
-        sticking = column(items, "friction_stiffness_N_m_per_rad")
-        beyond = column(items, "stiffness_N_m_per_rad")
-        return {"friction_stiffness_N_m_per_rad": np.where(
-            np.isnan(sticking), np.where(beyond > 0, beyond, inf), sticking)}
 
     def check_geometry(self, truss: ResolvedTruss, joints: Hinges, ranges_K: np.ndarray) -> None:
         apart = distances(truss.nodes.position_m, joints.nodes)
@@ -92,11 +84,6 @@ class HingeType(AboutAxis[Hinge, Hinges], JointType[Hinge, Hinges]):
             raise MissingKey("friction_stiffness_N_m_per_rad", code="hinge_sticking_missing", sticking=truss.sticking,
                              **self.where(joints.names[index]))
 
-    def engine_arrays(self, truss: ResolvedTruss, joints: Hinges) -> dict[str, Any]:
-        elastic = truss.sticking != "rigid"
-        return {"friction_stiffness_N_m_per_rad": joints.friction_stiffness_N_m_per_rad if elastic else (
-            np.full(len(joints.names), inf))}
-
     def joined(self, joints: Hinges) -> np.ndarray:
         return joints.nodes
 
@@ -106,29 +93,8 @@ class HingeType(AboutAxis[Hinge, Hinges], JointType[Hinge, Hinges]):
     def symbols(self, truss: ResolvedTruss, joints: Hinges) -> list[Symbol]:
         return [Symbol(truss.nodes.position_m[joints.nodes[:, 0]], "o", 0.9, 0.7, order=4.6)]
 
-    def legend(self, joints: Hinges) -> str:
-        return f"hinge, play ±{scaled(joints.deadband_rad, 1e3, 'mrad')}"
-
-    def describe(self, items: Sequence[Hinge]) -> str:
-        return (
-            f"{count(items, 'hinge')} with a free play of ±"
-            f"{spread((hinge.deadband_rad for hinge in items), 'rad')}, "
-            f"{spread((hinge.stiffness_N_m_per_rad for hinge in items), 'N m/rad')} beyond it, friction of "
-            f"{spread((hinge.friction_moment_N_m for hinge in items), 'N m')}."
-        )
-
     def add_friction(self, loads: Loads, joints: Hinges, state: Mapping[str, np.ndarray]) -> None:
         """Add nothing: the answers, which need it, refuse cases with hinges."""
-
-    def carried_friction(self, joints: Hinges, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        rotation = at["beam_hinge_rotation_rad"]
-        beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
-        elastic = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond
-        return np.abs(at["beam_hinge_moment_N_m"] - elastic), joints.friction_moment_N_m
-
-    def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
-        hinges: Hinges = truss.joints[self.section]
-        return truss.with_joints(hinge=replace(hinges, friction_moment_N_m=0 * hinges.friction_moment_N_m))
 
 
 HINGE = HingeType()

@@ -191,12 +191,9 @@ def _load_beam(reader: Reader, card: Card, of: Bar, load: Load) -> None:
         deck.refuse(card.name, "load_on_released_beam", card.line)
         return
     first, second = deck.ends_of(of)
-    section, angle = bending.section.turned()
-    axes = triad(first, second, bending.axis_y)
+    section, _, axes = bending.principal(first, second)
     if axes is None or of.young_modulus is None:
         return  # the error of the beam is reported elsewhere
-    y, z = axes[1:]
-    axes = np.array([axes[0], y * np.cos(angle) + z * np.sin(angle), z * np.cos(angle) - y * np.sin(angle)])
     length = float(np.linalg.norm(second - first))
     shear = shear_parameters(replace(bending, section=section), of.young_modulus, length)
     found = nodal_loads(load, length, axes, shear)
