@@ -60,16 +60,21 @@ inline JointSample sample(std::type_identity<ClearanceRevolute>) {
   return made;
 }
 
-inline JointSample sample(std::type_identity<LatchHinge>) {
-  LatchHinge one;
-  one.name = std::string("joint");
-  one.first_link = 0;
-  one.second_link = 1;
+template <class Type>
+void set_law(HingeLaw<Type>& one) {
   one.deadband = 1e-3;
   one.stiffness = 0.3;
   one.friction_moment = 0.2;
   one.preload_moment = -0.1;
   one.axis = Eigen::Vector3d(1.0, 2.0, 9.0).normalized();
+}
+
+inline JointSample sample(std::type_identity<LatchHinge>) {
+  LatchHinge one;
+  one.name = std::string("joint");
+  one.first_link = 0;
+  one.second_link = 1;
+  set_law(one);
   return two_links(one);
 }
 
@@ -120,11 +125,7 @@ inline JointSample sample(std::type_identity<Hinge>) {
   one.name = std::string("joint");
   one.first = 1;
   one.second = 3;
-  one.deadband = 1e-3;
-  one.stiffness = 0.3;
-  one.friction_moment = 0.2;
-  one.preload_moment = -0.1;
-  one.axis = Eigen::Vector3d(1.0, 2.0, 9.0).normalized();
+  set_law(one);
   return two_links(one);
 }
 
