@@ -73,6 +73,16 @@ def test_cantilever(dimension: int) -> None:
         assert fine[0] == pytest.approx(CANTILEVER_Hz[0] * 0.4, rel=2e-3)
 
 
+def test_slender_cantilever() -> None:
+    """Its lowest frequency is 1e-6 of that of a rod of one of its beams, and yet not zero."""
+    nodes = [node(f"N{i}", (i / 90, 0.0), "xy" if i == 0 else "") for i in range(91)]
+    nodes[0]["fixed_rotations"] = ["z"]
+    beams = [{"name": f"B{i}", "nodes": [f"N{i}", f"N{i + 1}"], "shape": "rectangle", "dimensions_m": [3e-4, 3e-4],
+              **ALUMINIUM} for i in range(90)]
+    found = modes(made(nodes, beam=beams), 1).frequency_Hz
+    assert found[0] == pytest.approx(3.5160152685 / (2 * pi) * sqrt(70e9 * 9e-8 / 12 / 2700), rel=1e-3)
+
+
 def test_joints_hold() -> None:
     """A mass on two springs in line, with a slider: the slider holds it; a free node has only the springs."""
     def case(**sections: Any) -> Any:

@@ -26,11 +26,9 @@ from statejump.schema.rules import WHOLE, Rule
 
 AXES = "xyz"
 COUNT = Rule(WHOLE, allowed=Range(1, 1000))
-# A truss that moves freely has a singular stiffness. This fraction of the mean stiffness over the mean mass keeps the
+# The stiffness of a slender truss is nearly singular. This fraction of the mean stiffness over the mean mass keeps the
 # factors regular; it is subtracted from the squares of the frequencies found, so that they do not depend on it.
 SHIFT = 1e-9
-# The square of a frequency below this multiple of the mean stiffness over the mean mass is the rounding of zero.
-RIGID = 1e-11
 COMPLIANCE = 1e-12
 DENSE = 300  # dofs up to which all modes are computed
 
@@ -102,7 +100,7 @@ def modes(case: TrussCase, count: int = 6) -> Modes:
         raise StatejumpError(code="no_moving_mass", case=truss.name)
     scale = stiffness.diagonal().sum() / mass.diagonal().sum()
     squares, shapes = _lowest(found, min(count, moving), SHIFT * scale)
-    frequency = np.sqrt(np.where(squares < RIGID * scale, 0.0, squares)) / (2 * pi)
+    frequency = np.sqrt(np.maximum(squares, 0.0)) / (2 * pi)
     nodes = len(truss.nodes.names)
     of_nodes = found["of_nodes"].tocsr()
     moved = (of_nodes @ shapes).T.reshape(len(squares), -1, 3)
