@@ -17,7 +17,7 @@ REST, MOVED = "0.7", "#0072B2"
 MOST_PANELS = 6
 COLUMNS = 3
 AMPLITUDE = 0.12  # largest displacement over the size of the structure
-POINTS = 13  # of the curve of a beam
+SHARE = np.linspace(0, 1, 13)[:, None]  # points of the curve of a beam, as fractions of its length
 
 
 def draw_modes(truss: ResolvedTruss, frequency_Hz: np.ndarray, displacement: np.ndarray,
@@ -49,17 +49,19 @@ def draw_modes(truss: ResolvedTruss, frequency_Hz: np.ndarray, displacement: np.
 def _curves(truss: ResolvedTruss, moved_m: np.ndarray, rotation: np.ndarray) -> list[np.ndarray]:
     """Return the lines (points, 3) of links and elements; beams are cubics with the rotations of their nodes."""
     position = truss.nodes.position_m + moved_m
-    ends = [truss.links.nodes, *(pairs for pairs, _ in styled_lines(truss))]
-    straight = [position[pair] for pairs in ends for pair in pairs]
+    ends = [truss.links.nodes, *(pairs for pairs, _ in styled_lines(truss, bent=False))]
+    made = [position[pair] for pairs in ends for pair in pairs]
     beams = truss.elements["beam"]
-    share = np.linspace(0, 1, POINTS)[:, None]
-    made = straight
-    for first, second in beams.nodes:
-        along = truss.nodes.position_m[second] - truss.nodes.position_m[first]
-        start = along + np.cross(rotation[first], along)
-        end = along + np.cross(rotation[second], along)
-        made.append((1 + 2 * share) * (1 - share) ** 2 * position[first] + share * (1 - share) ** 2 * start
-                    + share**2 * (3 - 2 * share) * position[second] - share**2 * (1 - share) * end)
+    offsets, released = (beams.offset_first_m, beams.offset_second_m), (beams.released_first, beams.released_second)
+    for index, nodes in enumerate(beams.nodes):
+        arms = [offset[index] for offset in offsets]
+        first, second = (position[node] + arm + np.cross(rotation[node], arm) for node, arm in zip(nodes, arms))
+        along = truss.nodes.position_m[nodes[1]] + arms[1] - truss.nodes.position_m[nodes[0]] - arms[0]
+        # An end that releases a moment has its own rotation; the chord stands for it.
+        start, end = (second - first if of[index, 1:].any() else along + np.cross(rotation[node], along)
+                      for node, of in zip(nodes, released))
+        made.append((1 + 2 * SHARE) * (1 - SHARE) ** 2 * first + SHARE * (1 - SHARE) ** 2 * start
+                    + SHARE**2 * (3 - 2 * SHARE) * second - SHARE**2 * (1 - SHARE) * end)
     return made
 
 

@@ -111,11 +111,14 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
     return found
 
 
-def styled_lines(truss: ResolvedTruss) -> list[tuple[np.ndarray, Lines]]:
-    """Return the end points (k, 2) of those elements that are drawn as lines, with the style of the lines."""
+def styled_lines(truss: ResolvedTruss, bent: bool = True) -> list[tuple[np.ndarray, Lines]]:
+    """Return the end points (k, 2) of those elements that are drawn as lines, with the style of the lines.
+
+    :param bent: whether elements that bend are among them
+    """
     return [(element.ends(elements)[style.which], style)
             for element, elements in ((one, truss.elements[one.section]) for one in ELEMENTS)
-            for style in element.lines(elements)]
+            for style in element.lines(elements) if bent or not element.bends]
 
 
 def guided(truss: ResolvedTruss) -> np.ndarray:
