@@ -2,6 +2,8 @@
 #include "rate_problem.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -36,52 +38,95 @@ double farthest(const System& system, const VectorXd& z, const VectorXd& step) {
   return std::sqrt(share) * system.size();
 }
 
-/// The complementarity matrix. It exists only if every candidate has exactly two statuses, stick
-/// and slip in one direction, which differ in one row.
-std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
-  const auto n = static_cast<Eigen::Index>(of.candidates.size());
-  std::vector<Eigen::Index> row(static_cast<std::size_t>(n));
-  VectorXd sense(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Candidate& one = of.candidates[static_cast<std::size_t>(i)];
-    if (one.branches.size() != 2) return std::nullopt;
-    const bool slips_second = is_slip(one.branches[1]);
-    const JointStatus slip = one.branches[slips_second ? 1 : 0];
-    const JointStatus held = one.branches[slips_second ? 0 : 1];
-    if (held != JointStatus::stick || !is_slip(slip)) return std::nullopt;
-    sense[i] = slip == JointStatus::slip_plus ? 1.0 : -1.0;
-    Eigen::Index differs = -1;
-    for (Eigen::Index k = one.place; k < one.place + one.rows; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      if (of.layers[0].units[at] == of.layers[1].units[at]) continue;
-      if (differs >= 0) return std::nullopt;
-      differs = k;
-    }
-    if (differs < 0) return std::nullopt;
-    row[static_cast<std::size_t>(i)] = differs;
-  }
-  // The complementary variables, both >= 0, are the slide in the slip direction, and the friction
-  // limit minus friction.
-  Eigen::MatrixXd matrix(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      matrix(i, j) = -sense[i] * sense[j] *
-                     of.layers[1].influence(row[static_cast<std::size_t>(i)],
-                                            row[static_cast<std::size_t>(j)]);
+/// The row of a candidate that differs between stick and slip, and the layers of both statuses.
+struct Exchange {
+  Eigen::Index row;
+  std::size_t stick, slip;
+};
+
+/// Exists only if the candidate's statuses are stick and slip. Slip in both directions must have
+/// the same gradients.
+std::optional<Exchange> exchange_of(const Branches& of, const Candidate& one) {
+  Exchange found{-1, one.branches.size(), one.branches.size()};
+  for (std::size_t layer = 0; layer < one.branches.size(); ++layer) {
+    const JointStatus status = one.branches[layer];
+    if (status == JointStatus::stick) {
+      found.stick = layer;
+    } else if (is_slip(status)) {
+      found.slip = layer;
+    } else {
+      return std::nullopt;
     }
   }
-  return matrix;
+  if (std::max(found.stick, found.slip) == one.branches.size()) return std::nullopt;
+  const Layer& stick = of.layers[found.stick];
+  for (std::size_t layer = 0; layer < one.branches.size(); ++layer) {
+    const auto gradients = [&](const Layer& with) {
+      return with.influence.middleRows(one.place, one.rows);
+    };
+    if (layer != found.stick && gradients(of.layers[layer]) != gradients(of.layers[found.slip])) {
+      return std::nullopt;
+    }
+  }
+  for (Eigen::Index k = one.place; k < one.place + one.rows; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (stick.units[at] == of.layers[found.slip].units[at]) continue;
+    if (found.row >= 0) return std::nullopt;
+    found.row = k;
+  }
+  return found.row >= 0 ? std::optional(found) : std::nullopt;
 }
 
-bool has_positive_symmetric_part(Eigen::MatrixXd matrix) {
-  if (matrix.size() == 0) return true;  // no candidates
-  // Scaling to a unit diagonal makes the rounding tolerance uniform.
-  if (!(matrix.diagonal().array() > 0.0).all()) return false;
+/// Matrix of the complementarity problem: slide of each candidate per decrease of the friction of
+/// each candidate, while all slip. It exists only if exchange_of() exists for every candidate.
+std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
+  const auto n = static_cast<Eigen::Index>(of.candidates.size());
+  std::vector<Exchange> exchanged;
+  for (const Candidate& one : of.candidates) {
+    const auto found = exchange_of(of, one);
+    if (!found) return std::nullopt;
+    exchanged.push_back(*found);
+  }
+  Eigen::MatrixXd stick(n, n), slip(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Exchange& one = exchanged[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Eigen::Index to = exchanged[static_cast<std::size_t>(j)].row;
+      stick(i, j) = of.layers[one.stick].influence(one.row, to);
+      slip(i, j) = of.layers[one.slip].influence(one.row, to);
+    }
+  }
+  if (slip.isIdentity(0.0)) return -stick;  // all slip in the base
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(slip);
+  if (!(factors.rcond() > epsilon)) return std::nullopt;
+  return -stick * factors.inverse();
+}
+
+/// Number of continuations that the complementarity matrix alone guarantees.
+enum class Guarantee : unsigned char {
+  none,
+  one_motion,  ///< All solutions have the same displacements; friction forces may differ.
+  one,
+};
+
+/// See RateProblem. The symmetric part is compared with zero to √ε of a matrix with unit diagonal:
+/// the factors of the equations and the matrix itself each lose some of the ε of its entries.
+Guarantee guaranteed_by(Eigen::MatrixXd matrix) {
+  if (matrix.size() == 0) return Guarantee::one;  // no candidates
+  if (!(matrix.diagonal().array() > 0.0).all()) return Guarantee::none;
   const VectorXd unit = matrix.diagonal().cwiseSqrt().cwiseInverse();
   matrix = unit.asDiagonal() * matrix * unit.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> factors(0.5 * (matrix + matrix.transpose()));
   const double rounding = std::sqrt(epsilon);
-  return factors.info() == Eigen::Success && (factors.vectorD().array() > rounding).all();
+  const Eigen::MatrixXd symmetric = 0.5 * (matrix + matrix.transpose());
+  const Eigen::LDLT<Eigen::MatrixXd> factors(symmetric);
+  if (factors.info() == Eigen::Success && (factors.vectorD().array() > rounding).all()) {
+    return Guarantee::one;
+  }
+  if ((matrix - symmetric).lpNorm<Eigen::Infinity>() > rounding) return Guarantee::none;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric, Eigen::EigenvaluesOnly);
+  const bool is_semidefinite =
+      eigen.info() == Eigen::Success && eigen.eigenvalues()[0] >= -rounding;
+  return is_semidefinite ? Guarantee::one_motion : Guarantee::none;
 }
 
 /// Step for which the statuses at its start are sought.
@@ -115,6 +160,7 @@ class RateSearch {
     const Asking asking;
     std::vector<Group> groups;
     std::vector<Found> found;  ///< For each group.
+    const Guarantee guarantee;
   };
 
   bool solved() const { return !of_.found.empty(); }
@@ -135,7 +181,7 @@ class RateSearch {
   /// that are not candidates.
   static Motion together(const Round& now, std::size_t special, const Motion& with);
   /// The continuation of a group whose solutions are one; null otherwise.
-  const Motion* only(const Found& of) const;
+  const Motion* only(const Found& of, Guarantee guarantee) const;
 
   Sought of_;
   Assembly& at_;
@@ -190,8 +236,8 @@ bool RateSearch::round() {
       prepare(of_.system, of_.z, of_.target, of_.start, candidates_, at_, factor_);
   if (!branches) return false;
   const auto matrix = complementarity_matrix(*branches);
-  const bool is_unique = matrix && has_positive_symmetric_part(*matrix);
-  if (is_unique && solved()) {
+  const Guarantee guarantee = matrix ? guaranteed_by(*matrix) : Guarantee::none;
+  if (guarantee != Guarantee::none && solved()) {
     answer_.count = Continuation::one;
     answer_.statuses = of_.found;
     return false;
@@ -200,7 +246,8 @@ bool RateSearch::round() {
             {of_.system, of_.z, of_.target, of_.start, *branches,
              farthest(of_.system, of_.z, branches->step)},
             groups_of(*branches),
-            {}};
+            {},
+            guarantee};
   if (branches->index < 0) {
     // It is unknown which group makes the base unstable.
     Group all(candidates_.size());
@@ -269,13 +316,15 @@ bool RateSearch::add_others(const Round& now) {
   return widened;
 }
 
-const Motion* RateSearch::only(const Found& of) const {
+const Motion* RateSearch::only(const Found& of, Guarantee guarantee) const {
   const auto& motions = of.motions;
   const auto count = std::count_if(motions.begin(), motions.end(),
                                    [](const Motion& one) { return one.index >= 0; });
   // The indices of all solutions sum to one (degree of the equations). Without unstable solutions
-  // and mechanisms, several stable solutions are therefore equal up to rounding.
-  const bool is_one = count == 1 || (count > 1 && count == std::ssize(motions) && !of.singular);
+  // and singular sets, several stable solutions are therefore equal up to rounding. If the matrix
+  // guarantees one motion, sets are singular because their constraints are dependent.
+  const bool equal = !of.singular || guarantee != Guarantee::none;
+  const bool is_one = count == 1 || (count > 1 && count == std::ssize(motions) && equal);
   if (!is_one) return nullptr;
   const auto far = [&](const Motion& to) {
     return to.index < 0 ? std::numeric_limits<double>::infinity()
@@ -298,7 +347,7 @@ void RateSearch::conclude(const Round& now) {
     const bool none = std::none_of(motions.begin(), motions.end(),
                                    [](const Motion& one) { return one.index >= 0; });
     if (none && !now.found[g].examined) examined = false;
-    if (const Motion* const one = only(now.found[g])) {
+    if (const Motion* const one = only(now.found[g], now.guarantee)) {
       stable.push_back(one);
       continue;
     }

@@ -32,12 +32,14 @@ struct RateAnswer {
 ///
 /// **Solution.** With stick and slip alone this is a linear complementarity problem. If the
 /// symmetric part of its matrix is positive definite, it has exactly one solution for any
-/// temperature rate [1]. Otherwise the joints are divided into uncoupled groups. For a group of up
-/// to eight joints all sets are tried. For a larger group pivoting finds one solution; other
-/// solutions may exist. Solutions with equal motions count as one. The index of a solution is the
-/// sign of det J(S), after the sign of every closure row is reversed. Solutions with a negative
-/// index are no continuations: with any friction that grows with slip rate, however small, the
-/// state moves away from such solutions.
+/// temperature rate [1]. If the matrix is symmetric and positive semidefinite, the displacements of
+/// all its solutions are equal [1]; this is so where the constraints of joints that stick are
+/// dependent, for example of two latches in one hinge. Otherwise the joints are divided into
+/// uncoupled groups. For a group of up to eight joints all sets are tried. For a larger group
+/// pivoting finds one solution; other solutions may exist. Solutions with equal motions count as
+/// one. The index of a solution is the sign of det J(S), after the sign of every closure row is
+/// reversed. Solutions with a negative index are no continuations: with any friction that grows
+/// with slip rate, however small, the state moves away from such solutions.
 ///
 /// A solution is a jump, not a continuation, if its displacement exceeds √s times the size of the
 /// truss. s is the larger of two ratios in the step with unchanged statuses: displacement to the
