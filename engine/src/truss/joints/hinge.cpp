@@ -10,12 +10,15 @@
 #include "statejump/kernel/rotation.hpp"
 #include "statejump/truss/model.hpp"
 #include "truss/joints/hinge_law.hpp"
+#include "truss/joints/relative_rotation.hpp"
 #include "truss/joints/writer.hpp"
 #include "truss/parts.hpp"
 
 namespace statejump::truss {
 
 using detail::index;
+using detail::QuaternionRates;
+using detail::SpinGradient;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -29,51 +32,19 @@ Vector3d rotation_vector(const Trial& trial, std::size_t which) {
 }
 
 /// Rotation of the second node relative to the first one, in axes that rotate with the first node.
-struct Relative {
+struct Relative : detail::RotationAt {
   kernel::Quaternion first;
-  double w;
-  Vector3d v;
 };
 
 Relative relative(const Trial& trial) {
   const kernel::Quaternion first = kernel::rotation_of(rotation_vector(trial, of_first));
   const kernel::Quaternion second = kernel::rotation_of(rotation_vector(trial, of_second));
   const kernel::Quaternion both = first.conjugate() * second;
-  return {first, both.w(), both.vec()};
-}
-
-/// Gradient of a function of the relative rotation by the relative spin, in axes of the first node,
-/// and its derivative by that spin.
-struct Gradient {
-  Vector3d value;
-  Matrix3d slope;
-};
-
-/// Rates of w and v by the spin.
-struct QuaternionRates {
-  Eigen::RowVector3d w;
-  Matrix3d v;
-
-  explicit QuaternionRates(const Relative& at)
-      : w(-0.5 * at.v.transpose()), v(0.5 * (at.w * Matrix3d::Identity() - kernel::skew(at.v))) {}
-};
-
-/// Of the rotation about the axis.
-Gradient of_rotation(const Relative& at, const Vector3d& axis) {
-  const QuaternionRates rates(at);
-  const double s = at.v.dot(axis);
-  const Eigen::RowVector3d s_rate = axis.transpose() * rates.v;
-  const double size = at.w * at.w + s * s;
-  const Vector3d across = at.v.cross(axis);
-  const Vector3d sum = at.w * at.w * axis + at.w * across + s * at.v;
-  const Matrix3d sum_rate = (2.0 * at.w * axis + across) * rates.w -
-                            at.w * kernel::skew(axis) * rates.v + at.v * s_rate + s * rates.v;
-  const Eigen::RowVector3d size_rate = 2.0 * (at.w * rates.w + s * s_rate);
-  return {sum / size, (sum_rate - sum / size * size_rate) / size};
+  return {{both.w(), both.vec()}, first};
 }
 
 /// Of v·t, half the tilt about t.
-Gradient of_tilt(const Relative& at, const Vector3d& t) {
+SpinGradient of_tilt(const Relative& at, const Vector3d& t) {
   const QuaternionRates rates(at);
   return {0.5 * (at.w * t + at.v.cross(t)), 0.5 * (t * rates.w - kernel::skew(t) * rates.v)};
 }
@@ -92,7 +63,7 @@ class HingeWriter {
 
   /// Row and column of an unknown for the gradient of a function.
   /// @param by_row factor of the function in the row; @param by_force moment over force [m]
-  void row(int row, const Gradient& of, double by_row, double by_force) const {
+  void row(int row, const SpinGradient& of, double by_row, double by_force) const {
     const Vector3d world = axes_ * of.value;
     for (const std::size_t which : {of_first, of_second}) {
       const Vector3d gradient = sign(which) * (spin_[which].transpose() * world);
@@ -102,7 +73,7 @@ class HingeWriter {
   }
   /// Moments of size `moment` conjugate to a function, and their derivative.
   /// @param stiffness derivative of the moment by the function
-  void moment(const Gradient& of, double moment, double stiffness) {
+  void moment(const SpinGradient& of, double moment, double stiffness) {
     const Vector3d world = axes_ * of.value;
     const Matrix3d by_relative = axes_ *
                                  (moment * of.slope + stiffness * of.value * of.value.transpose()) *
@@ -208,13 +179,13 @@ void Hinge::evaluate(const Trial& trial, JointStatus status, JointWriter& writer
   const Law law = evaluate_law(trial, status, writer);
   const double radius = law.radius;
   const Relative at = relative(trial);
-  const Gradient about = of_rotation(at, axis);
+  const SpinGradient about = detail::angle_gradient(at, axis);
   HingeWriter write(trial, at, writer);
   write.row(0, about, law.by_row, radius);
   write.moment(about, law.moment, law.tangent);
   for (int k = 1; k < trial.frame.forces; ++k) {
     const Vector3d t = trial.frame.axes.col(k - 1);
-    const Gradient tilt = of_tilt(at, t);
+    const SpinGradient tilt = of_tilt(at, t);
     // v·t is half of a small tilt.
     writer.closure(k, 2.0 * radius * at.v.dot(t));
     writer.corner(k, k, 0.0);
@@ -226,8 +197,7 @@ void Hinge::evaluate(const Trial& trial, JointStatus status, JointWriter& writer
 }
 
 double Hinge::rotation(const Trial& trial) const {
-  const Relative at = relative(trial);
-  return 2.0 * std::atan2(at.v.dot(axis), at.w);
+  return detail::angle_about(relative(trial), axis);
 }
 
 double Hinge::radius(const Trial& trial) const {

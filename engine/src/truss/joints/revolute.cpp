@@ -8,6 +8,7 @@
 #include "statejump/truss/model.hpp"
 #include "truss/joints/hertz_contact.hpp"
 #include "truss/joints/partial_slip.hpp"
+#include "truss/joints/relative_rotation.hpp"
 #include "truss/joints/writer.hpp"
 #include "truss/parts.hpp"
 
@@ -32,7 +33,8 @@ namespace {
 /// in a step of the shortest length is a jump.
 constexpr double most_turned = 0.5;
 
-// Local node numbers: journal, bearing, and the far ends of the links that rotate them.
+// Local sites: journal, bearing, and what rotates them, the far ends of links or the rotations of
+// their own nodes.
 constexpr std::size_t journal = 0;
 constexpr std::size_t bearing = 1;
 constexpr std::size_t journal_far = 2;
@@ -41,9 +43,11 @@ constexpr std::size_t bearing_far = 3;
 /// Memory of a revolute in history(). With partial slip, the contact's memory follows. In-plane
 /// vectors are components along its two plane directions.
 struct Memory {
-  Vector2d eccentricity;       ///< [m]
-  Vector2d journal_direction;  ///< Journal minus far node of its link [m]; zero without link.
-  Vector2d bearing_direction;  ///< Bearing minus far node of its link [m]; zero without link.
+  Vector2d eccentricity;  ///< [m]
+  /// Direction that rotates with the journal: journal minus far node of its link [m], or a unit
+  /// vector at the angle of its node; zero if it does not rotate.
+  Vector2d journal_direction;
+  Vector2d bearing_direction;  ///< Likewise.
   double journal_radius;       ///< At the contact [m].
   double bearing_radius;       ///< Likewise.
   double normal;               ///< λ_n [N].
@@ -110,12 +114,16 @@ Geometry geometry_of(const ClearanceRevolute& joint, const Trial& trial) {
   const Matrix32 plane = plane_of(trial);
   Geometry g{};
   g.eccentricity = plane.transpose() * trial.between(bearing, journal);
-  if (joint.journal_link >= 0) {
-    g.journal_direction = plane.transpose() * trial.between(journal_far, journal);
-  }
-  if (joint.bearing_link >= 0) {
-    g.bearing_direction = plane.transpose() * trial.between(bearing_far, bearing);
-  }
+  const auto direction = [&](int link, std::size_t at, std::size_t far) -> Vector2d {
+    if (trial.frame.rotates[far]) {
+      const double angle = detail::node_angle(trial, far, joint.axis);
+      return {std::cos(angle), std::sin(angle)};
+    }
+    if (link < 0) return Vector2d::Zero();
+    return plane.transpose() * trial.between(far, at);
+  };
+  g.journal_direction = direction(joint.journal_link, journal, journal_far);
+  g.bearing_direction = direction(joint.bearing_link, bearing, bearing_far);
   const double change = trial.temperature_change;
   const double bore = joint.journal_radius + joint.radial_clearance;
   g.clearance = trial.opening * (joint.radial_clearance + change * joint.clearance_growth());
@@ -279,9 +287,19 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
     of.bend(journal, bearing, -bend);
     of.bend(bearing, journal, -bend);
   }
-  // If a link rotates, its radius times the angle is added to the slide.
+  // If a part rotates, its radius times the angle is added to the slide.
+  const auto turn_with_node = [&](std::size_t site, double radius, double mean_radius) {
+    // The first component is along the gradient of the angle, see PlanarWriter::along().
+    of.friction[site] = radius * Vector2d::UnitX();
+    of.slide[site] = mean_radius * Vector2d::UnitX();
+    if (!bends) return;
+    const Matrix2d by_distance = -friction * deeper * Vector2d::UnitX() * along.transpose();
+    of.bend(site, journal, by_distance);
+    of.bend(site, bearing, -by_distance);
+  };
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction, double radius,
                         double mean_radius) {
+    if (trial.frame.rotates[far]) return turn_with_node(far, radius, mean_radius);
     const PlanarAngle angle = planar_angle(direction);
     for (const auto& [node, sign] : {std::pair{at, 1.0}, std::pair{far, -1.0}}) {
       of.friction[node] += sign * radius * angle.gradient;
@@ -297,11 +315,11 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
       of.bend(node, bearing, -sign * by_distance);
     }
   };
-  if (joint.journal_link >= 0) {
+  if (joint.journal_link >= 0 || trial.frame.rotates[journal_far]) {
     turn(journal, journal_far, g.journal_direction, g.journal_radius,
          0.5 * (start.journal_radius + g.journal_radius));
   }
-  if (joint.bearing_link >= 0) {
+  if (joint.bearing_link >= 0 || trial.frame.rotates[bearing_far]) {
     turn(bearing, bearing_far, g.bearing_direction, -g.bearing_radius,
          -0.5 * (start.bearing_radius + g.bearing_radius));
   }
@@ -318,6 +336,10 @@ std::span<const Parameter<ClearanceRevolute>> ClearanceRevolute::parameters() {
        &R::journal_link},
       {"bearing_link", "bearing link", "-", Allowed::link_or_none, "the case's links",
        &R::bearing_link},
+      {"journal_turns", "journal turns with its node", "-", Allowed::flag, "the case",
+       &R::journal_turns},
+      {"bearing_turns", "bearing turns with its node", "-", Allowed::flag, "the case",
+       &R::bearing_turns},
       {"program", "program", "-", Allowed::program, "the case", &R::program},
       {"temperature_fraction", "temperature_fraction", "-", Allowed::finite, "the case",
        &R::temperature_fraction},
@@ -362,6 +384,8 @@ void ClearanceRevolute::validate(const Model& model) const {
   };
   check_link(journal_link, journal_node, "journal link");
   check_link(bearing_link, bearing_node, "bearing link");
+  check(!journal_turns || journal_link < 0, "journal_turns", journal_turns, "0 with a link");
+  check(!bearing_turns || bearing_link < 0, "bearing_turns", bearing_turns, "0 with a link");
   check(std::isinf(mindlin_stiffness) || std::isfinite(hertz_stiffness), "mindlin_stiffness",
         mindlin_stiffness, "infinite, because hertz_stiffness is");
   check(!partial_slip || (friction_coefficient > 0.0 && std::isfinite(mindlin_stiffness)),
@@ -381,13 +405,19 @@ int ClearanceRevolute::history() const {
 
 JointFrame ClearanceRevolute::frame(const Model& model) const {
   JointFrame frame;
-  const auto far_end = [&](int link, int node) {
-    if (link < 0) return -1;
-    const Bar& part = model.links[index(link)];
-    return part.first == node ? part.second : part.first;
+  frame.nodes = {journal_node, bearing_node, -1, -1};
+  const auto turns = [&](std::size_t far, int link, int with_node, int node) {
+    if (link >= 0) {
+      const Bar& part = model.links[index(link)];
+      frame.nodes[far] = part.first == node ? part.second : part.first;
+    } else if (with_node != 0) {
+      frame.nodes[far] = rotation_site(model, node);
+      frame.rotates[far] = true;
+      frame.arms[far] = model.nodes[index(node)].arm;
+    }
   };
-  frame.nodes = {journal_node, bearing_node, far_end(journal_link, journal_node),
-                 far_end(bearing_link, bearing_node)};
+  turns(journal_far, journal_link, journal_turns, journal_node);
+  turns(bearing_far, bearing_link, bearing_turns, bearing_node);
   frame.node_count = 4;
   frame.forces = 2;
   frame.program = program;
@@ -469,6 +499,15 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     }
   }
   PlanarWriter planar(writer, plane_of(trial));
+  for (const auto& [site, radius] :
+       {std::pair{journal_far, g.journal_radius}, std::pair{bearing_far, -g.bearing_radius}}) {
+    if (!trial.frame.rotates[site]) continue;
+    const detail::NodeTurn turn = detail::node_turn(trial, site, axis);
+    planar.along(site, turn.gradient);
+    // The friction forces of statuses without contact are zero.
+    const double moment = of.friction[site].isZero(0.0) ? 0.0 : friction * radius;
+    if (bends) writer.block(site, site, moment * turn.hessian);
+  }
   for (std::size_t a = 0; a < 4; ++a) {
     planar.force(a, normal * of.normal[a] + friction * of.friction[a]);
   }
@@ -481,6 +520,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     planar.row(0, a, (holds_normal ? 1.0 : 0.0) * of.normal[a]);
     planar.row(1, a, slides * of.slide[a]);
     for (std::size_t b = 0; b < 4; ++b) {
+      if (a == b && trial.frame.rotates[a]) continue;
       if (of.bent[a][b]) {
         planar.block(a, b, of.hessian[a][b]);
       } else {
@@ -523,13 +563,21 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
   const double friction = trial.force[1];
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction,
                         double by_radius) {
+    if (trial.frame.rotates[far]) {
+      const Vector3d gradient = detail::node_turn(trial, far, axis).gradient;
+      return writer.force(far, friction * by_radius * gradient);
+    }
     const Vector3d force =
         friction * by_radius * angle_derivatives(direction, plane_of(trial)).gradient;
     writer.force(at, force);
     writer.force(far, -force);
   };
-  if (journal_link >= 0) turn(journal, journal_far, g.journal_direction, by_journal);
-  if (bearing_link >= 0) turn(bearing, bearing_far, g.bearing_direction, -by_bearing);
+  if (journal_link >= 0 || trial.frame.rotates[journal_far]) {
+    turn(journal, journal_far, g.journal_direction, by_journal);
+  }
+  if (bearing_link >= 0 || trial.frame.rotates[bearing_far]) {
+    turn(bearing, bearing_far, g.bearing_direction, -by_bearing);
+  }
 }
 
 namespace {

@@ -317,6 +317,15 @@ class PlanarWriter {
     }
   }
 
+  /// From here on, the first component of vectors at a site is along a gradient, and the second one
+  /// is omitted. An angle of a node has such a gradient.
+  void along(std::size_t site, const Eigen::Vector3d& gradient) {
+    const NodeDofs& at = to_->places[site];
+    for (int i = 0; i < at.freedoms; ++i) {
+      seen_[site].col(i) << gradient.dot(at.directions->col(i)), 0.0;
+    }
+  }
+
   void force(std::size_t node, const Eigen::Vector2d& value) {
     const NodeDofs& at = to_->places[node];
     for (int i = 0; i < at.freedoms; ++i) {

@@ -19,6 +19,7 @@ from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
+from statejump.kinds.truss.rotating import rotating_nodes
 from statejump.kinds.truss.sections import Link, TrussSections
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
 
@@ -37,10 +38,13 @@ def check_references(case: TrussSections) -> None:
     _expansions(case)
     _members(case)
     _alternatives(case)
-    around = Around(node_places, link_places, _held(case), node_places.of(case.link, "nodes"))
+    rotating = rotating_nodes(case)
+    turned = node_places.called(sorted(rotating))
+    around = Around(node_places, link_places, _held(case), turned[turned != UNKNOWN],
+                    node_places.of(case.link, "nodes"))
     for kind in (*JOINTS, *ELEMENTS):
         for item in where_wrong(kind.listed(case), partial(kind.may_be_wrong_references, around=around)):
-            kind.check_references(item, nodes, links)
+            kind.check_references(item, nodes, links, rotating)
     check_constraints(case, nodes)
     check_mechanism.check(case, links)
     if case.reflector is not None:

@@ -18,10 +18,10 @@ from statejump.kinds.truss.arrays import said
 from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.beam import rotated_nodes
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.references import vector, wrong_vectors
 from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.rotating import rotating_nodes
 from statejump.kinds.truss.sections import Node, TrussSections
 from statejump.schema.item_tables import ItemColumns, each, repeated_names, where_wrong
 
@@ -51,11 +51,9 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
 def _rotations(case: TrussSections) -> None:
     """Check the supports of rotations and the moments of nodes: only beams, rigid bodies and hinges rotate nodes."""
     dimension = case.truss.dimension
-    others = {name for hinge in case.hinge for name in hinge.nodes} | {rigid.master for rigid in case.rigid}
-    others |= {name for rigid in case.rigid if rigid.rotations for name in rigid.nodes}
+    rotating = rotating_nodes(case)
     # A support may prevent a rotation that no beam transmits; a moment there would have no effect.
-    ends = {"fixed_rotations": others | {name for beam in case.beam for name in beam.nodes},
-            "moment_N_m": others | rotated_nodes(case.beam, dimension)}
+    ends = {"fixed_rotations": rotating | {name for beam in case.beam for name in beam.nodes}, "moment_N_m": rotating}
 
     def wrong(nodes: ItemColumns[Node]) -> np.ndarray:
         given = said(nodes, "moment_N_m")

@@ -65,6 +65,7 @@ class Around:
     nodes: ItemIndex
     links: ItemIndex
     held: np.ndarray  # (nodes,) bool: it has a support
+    rotating: np.ndarray  # (k,) indices of the nodes that beams, rigid bodies or hinges rotate
     link_nodes: np.ndarray  # (links, k) indices of the nodes of each link
 
 

@@ -18,6 +18,7 @@ from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
+from statejump.kinds.truss.rotating import rotating_nodes
 from statejump.kinds.truss.sections import TrussSections, TrussThermal
 from statejump.schema.item_tables import ItemColumns, ItemIndex, once
 
@@ -90,7 +91,7 @@ def _rotations(case: TrussSections) -> dict[str, np.ndarray]:
     count = len(case.node)
     if not (case.beam or case.rigid or case.hinge):
         none = np.broadcast_to(0.0, (count, 3))
-        return {"fixed_rotations": none != 0, "moment_N_m": none}
+        return {"fixed_rotations": none != 0, "moment_N_m": none, "rotates": none[:, 0] != 0}
     clamped = np.stack([having(case.node, "fixed_rotations", axis) for axis in "xyz"], axis=1)
     moment = np.zeros((count, 3))
     for index, given in enumerate(values(case.node, "moment_N_m")):
@@ -98,7 +99,8 @@ def _rotations(case: TrussSections) -> dict[str, np.ndarray]:
             moment[index, 3 - len(given):] = given
     if case.truss.dimension == 2:
         clamped[:, :2] = True
-    return {"fixed_rotations": clamped, "moment_N_m": moment}
+    rotates = np.isin(names(case.node), list(rotating_nodes(case)))
+    return {"fixed_rotations": clamped, "moment_N_m": moment, "rotates": rotates}
 
 
 def _links(case: TrussSections, nodes: np.ndarray, positions: np.ndarray, warmed: LinkTemperatures) -> Links:

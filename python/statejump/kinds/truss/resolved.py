@@ -40,6 +40,7 @@ class Nodes:
     # Where beams end:
     fixed_rotations: np.ndarray  # (n, 3) bool: no rotation about x, y, z; planar trusses: x and y everywhere
     moment_N_m: np.ndarray  # (n, 3)
+    rotates: np.ndarray  # (n,) bool: beams, rigid bodies or hinges rotate it
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,8 @@ struct JointFrame {
   /// nodes, see rotation_site(). −1 means the ground, or no node.
   std::array<int, most_joint_nodes> nodes{-1, -1, -1, -1};
   int node_count = 0;
+  /// Whether a site is the rotation of a node.
+  std::array<bool, most_joint_nodes> rotates{};
   /// Node::arm of the sites that are rotations [m].
   std::array<double, most_joint_nodes> arms{1.0, 1.0, 1.0, 1.0};
   int forces = 0;    ///< Unknown forces, each with a row of its own.

@@ -8,13 +8,13 @@
 
 namespace statejump::truss {
 
-/// Revolute joint with clearance and dry friction about a fixed axis: a journal on the end of one
-/// link in a bearing on the end of another.
+/// Revolute joint with clearance and dry friction about a fixed axis: a journal in a bearing, each
+/// on the end of a link or on a node that rotates.
 ///
 /// **Law.** d is the eccentricity and n = d/|d| the normal. φ, θ_J, θ_B are the angles of d and of
-/// the links that rotate journal and bearing. r1 is the journal's radius minus half the depth, r2
-/// the bearing's radius plus half the depth, so that both surfaces meet in one point and the
-/// moments balance. The surfaces slide in a step by Δσ = ∫ |d| dφ + r1 dθ_J − r2 dθ_B:
+/// the links or nodes that rotate journal and bearing. r1 is the journal's radius minus half the
+/// depth, r2 the bearing's radius plus half the depth, so that both surfaces meet in one point and
+/// the moments balance. The surfaces slide in a step by Δσ = ∫ |d| dφ + r1 dθ_J − r2 dθ_B:
 ///
 ///   open    λ_n = λ_t = 0, |d| <= c    contact |d| = c + (λ_n/K)^(2/3), λ_n >= 0
 ///   stick   Δσ = 0, |λ_t| <= μ λ_n     slip±   λ_t = ±μ λ_n, ±Δσ >= 0
@@ -35,6 +35,8 @@ struct ClearanceRevolute {
   int bearing_node = 0;
   int journal_link = -1;                 ///< Rotates the journal; −1: none.
   int bearing_link = -1;                 ///< Rotates the bearing; −1: none.
+  int journal_turns = 0;                 ///< 1: its node rotates the journal, no link.
+  int bearing_turns = 0;                 ///< 1: its node rotates the bearing, no link.
   double journal_radius = 0.0;           ///< R1 at ΔT = 0 [m], > 0.
   double radial_clearance = 0.0;         ///< c = R2 − R1 at ΔT = 0 [m], > 0.
   double journal_thermal_expansion = 0;  ///< [1/K].

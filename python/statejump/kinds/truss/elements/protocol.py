@@ -8,7 +8,7 @@ in ``yade_scripts/runner/scene_truss.py``, has a loop for each supported type.
 """
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, TypeVar, cast
 
@@ -137,7 +137,8 @@ EndsType = TypeVar("EndsType", bound=EndsArrays)
 class BetweenNodes(ElementType[ItemType, EndsType]):
     """An element type between two nodes. Items have the key ``nodes``, arrays the fields of :class:`EndsArrays`."""
 
-    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any],
+                         rotating: Container[str]) -> None:
         known_nodes(cast(Ended, item).nodes, 2, nodes, self.where(item.name))
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:

@@ -2,7 +2,7 @@
 """Joints whose first node slides along an axis fixed in space, relative to the ground or to a second node."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
@@ -51,7 +51,8 @@ class AlongAxis(JointType[ItemType, ArraysType]):
     def check_vectors(self, item: ItemType, dimension: int) -> None:
         vector("axis", cast(Directed, item).axis, "-", dimension, True, **self.where(item.name))
 
-    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any],
+                         rotating: Container[str]) -> None:
         known_nodes(cast(Directed, item).nodes, 1, nodes, self.where(item.name))
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 """Hinges between beams or rigid bodies: rotation about an axis with play, stiffness, friction and a preload moment."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import Any, ClassVar
@@ -66,7 +66,8 @@ class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
     in_motion = False
     not_in_dem = "rotates its nodes, the DEM has no rotations of nodes yet"
 
-    def check_references(self, item: Hinge, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+    def check_references(self, item: Hinge, nodes: Mapping[str, Any], links: Mapping[str, Any],
+                         rotating: Container[str]) -> None:
         known_nodes(item.nodes, 2, nodes, self.where(item.name))
 
     def may_be_wrong_references(self, items: ItemColumns[Hinge], around: Around) -> np.ndarray:

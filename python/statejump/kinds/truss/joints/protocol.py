@@ -7,7 +7,7 @@ support a type, a method of the type returns the reason.
 """
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, Protocol, TypeVar, cast
 
@@ -133,8 +133,12 @@ class PartType(Generic[ItemType, ArraysType]):
     def check_vectors(self, item: ItemType, dimension: int) -> None:
         """Raise NotAllowed for a vector whose length is not the dimension of the truss."""
 
-    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        """Raise an error if an item refers to a missing or unsuitable node or link."""
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any],
+                         rotating: Container[str]) -> None:
+        """Raise an error if an item refers to a missing or unsuitable node or link.
+
+        :param rotating: names of the nodes that beams, rigid bodies or hinges rotate
+        """
         raise NotImplementedError
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
@@ -198,7 +202,8 @@ class Linked(Protocol):
 class BetweenLinks(AboutAxis[ItemType, ArraysType]):
     """A type that acts on the angle between two ``links``, or on the angle of one link."""
 
-    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any],
+                         rotating: Container[str]) -> None:
         known_links(cast(Linked, item).links, links, self.where(item.name))
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:

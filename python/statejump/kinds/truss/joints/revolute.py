@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import unit
+from statejump.kinds.truss.arrays import GROUND, unit
 from statejump.kinds.truss.joints.protocol import (
     ALUMINIUM, BLACK, USER, AboutAxis, Contacts, ItemColumn, Sampled, Symbol, scaled,
 )
@@ -23,12 +23,13 @@ from statejump.schema.items import Item
 @definition
 class Revolute(Item):
     """A clearance revolute joint with Coulomb friction: the journal, at one node, moves in the bearing, at another. A
-    link carries and rotates each part; without a link a part does not rotate."""
+    link carries and rotates each part; without a link, a part rotates with its node where beams, rigid bodies or hinges
+    rotate that, and does not rotate elsewhere."""
 
     bearing_node: str = text(..., "where the bearing's centre is")
     journal_node: str = text(..., "where the journal's centre is")
-    bearing_link: str | None = text(None, "whose end carries the bearing; none: it does not turn")
-    journal_link: str | None = text(None, "whose end carries the journal; none: it does not turn")
+    bearing_link: str | None = text(None, "whose end carries the bearing; none: it turns with its node, if beams end there")
+    journal_link: str | None = text(None, "whose end carries the journal; none: it turns with its node, if beams end there")
     journal_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
     radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
     friction_coefficient: float = parameter(..., "-", 0, 10, USER)
@@ -48,8 +49,8 @@ class Revolutes(RoundArrays):
 
     bearing_node: np.ndarray  # int
     journal_node: np.ndarray  # int
-    bearing_link: np.ndarray  # int, GROUND: the bearing does not rotate
-    journal_link: np.ndarray  # int, GROUND: the journal does not rotate
+    bearing_link: np.ndarray  # int, GROUND: its node rotates the bearing, or nothing does
+    journal_link: np.ndarray  # int, GROUND: likewise
     axis: np.ndarray  # (r, 3) unit; z in planar trusses
     journal_radius_m: np.ndarray
     journal_thermal_expansion_per_K: np.ndarray
@@ -70,6 +71,7 @@ class RevoluteType(AboutAxis[Revolute, Revolutes], RoundParts[Revolute, Revolute
     varied = ("friction_coefficient", "radial_clearance_m", "journal_radius_m")
     noun = "revolute joint"
     inner, outer = "journal", "bearing"
+    turns_with_nodes = True
     eccentricity, normal_force, friction_force = "eccentricity_m", "normal_force_N", "friction_force_N"
 
     def check_geometry(self, truss: ResolvedTruss, joints: Revolutes, ranges_K: np.ndarray) -> None:
@@ -82,7 +84,9 @@ class RevoluteType(AboutAxis[Revolute, Revolutes], RoundParts[Revolute, Revolute
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Revolutes) -> dict[str, Any]:
         sticks = {} if truss.sticking != "rigid" else {"mindlin_stiffness_N_per_m15": np.full(len(joints.names), inf)}
-        return {**super().engine_arrays(truss, joints), **sticks}
+        turns = {f"{part}_turns": (getattr(joints, f"{part}_link") == GROUND)
+                 & truss.nodes.rotates[getattr(joints, f"{part}_node")] for part in self.parts}
+        return {**super().engine_arrays(truss, joints), **sticks, **turns}
 
     def contacts(self, run: Sampled, joints: Revolutes) -> Contacts:
         normal = self.normals(run)

@@ -2,7 +2,7 @@
 """Rigid bodies of nodes: a master carries other nodes on rigid arms."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -62,7 +62,8 @@ class RigidType(JointType[Rigid, Rigids]):
         if item.rotations and not set("z" if dimension == 2 else AXES) <= set(item.rotations):
             raise NotAllowed("rotations", item.rotations, code="rigid_rotations", **where)
 
-    def check_references(self, item: Rigid, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+    def check_references(self, item: Rigid, nodes: Mapping[str, Any], links: Mapping[str, Any],
+                         rotating: Container[str]) -> None:
         where = self.where(item.name)
         known_name("master", item.master, item.master, nodes, "node", **where)
         if not item.nodes:

@@ -2,7 +2,7 @@
 """Joints with clearance and Coulomb friction: a round part at one node moves in a bore at another node."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, ClassVar, TypeVar
@@ -51,6 +51,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
     normal_force: ClassVar[str]
     friction_force: ClassVar[str]
     has_axis: ClassVar[bool] = True  # whether its arrays have the axis of rotation of both parts
+    turns_with_nodes: ClassVar[bool] = False  # without a link, a node that rotates turns its part
     has_temperature = True
     has_contacts = True
 
@@ -101,15 +102,20 @@ class RoundParts(JointType[ItemType, ArraysType]):
             return joints.names[index], "has contact = 'rigid'"
         return None
 
-    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any],
+                         rotating: Container[str]) -> None:
         where = self.where(item.name)
         for part in self.parts:
             node_key, link_key = f"{part}_node", f"{part}_link"
             node, link = getattr(item, node_key), getattr(item, link_key)
             known_name(node_key, node, node, nodes, "node", **where)
             if link is None:
+                if node in rotating:
+                    if not self.turns_with_nodes:
+                        raise MissingKey(link_key, code="part_on_rotating_node", nodes=(node,), part=part,
+                                         node_wanted=node, **where)
                 # Nothing determines the rotation of this part.
-                if not nodes[node].fixed and nodes[node].guide_normal is None:
+                elif not nodes[node].fixed and nodes[node].guide_normal is None:
                     raise MissingKey(link_key, code="rotating_part_unsupported", nodes=(node,), part=part,
                                      node_wanted=node, **where)
                 continue
@@ -131,7 +137,9 @@ class RoundParts(JointType[ItemType, ArraysType]):
         wrong = (nodes[0] == nodes[1]) | ((links[0] == links[1]) & (links[0] != NONE))
         for node, link in zip(nodes, links):
             wrong |= (node < 0) | (link == UNKNOWN)
-            wrong |= np.where(link == NONE, ~around.held[node], (around.link_nodes[link] != node[:, None]).all(axis=1))
+            held = around.held.copy()
+            held[around.rotating] = self.turns_with_nodes
+            wrong |= np.where(link == NONE, ~held[node], (around.link_nodes[link] != node[:, None]).all(axis=1))
         return np.asarray(wrong)
 
     def expands(self, item: ItemType) -> bool:
