@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Solves frames with sliders and Iwan joints, and checks that their jumps do not depend on order, names and units.
+"""Solves frames with joints, and checks that their jumps do not depend on order, names and units.
 
     PYTHONPATH=build/python tests/ordinary/frames.py [--count 300] [--seed 1] [--families ...] [--most-nodes 60]
         [--changes 0] [--out FILE.csv]
 
 A frame is an ordinary structure (``structures.py``) whose bars are tubes with rigid connections. Half of the tubes have
-a thermal gradient. Bars that a joint turns with, or that have keys of links only, stay bars. Prints a table of the
-outcomes by family.
+a thermal gradient. Bars that have keys of links only stay bars. The nodes of tubes turn the parts of revolutes and
+balls. Prints a table of the outcomes by family.
 """
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ THICKNESS = 0.1  # of a tube, over its outer radius
 GRADIENT = 0.3  # largest difference of temperature across a tube over that of its program
 KEYS = {"name", "nodes", "young_modulus_Pa", "thermal_expansion_per_K", "density_kg_per_m3", "temperature_fraction",
         "program"}
-OTHERS = (*CLEARANCE, "latch_hinge", "torsion_spring")  # items that turn with bars
+OTHERS = ("latch_hinge", "torsion_spring")  # items that turn with bars
 # Newton's method ends at 1e-13 of the displacements for each of some hundred increments, and the condition number of
 # slender frames, (length/radius)², multiplies the rounding of lengths.
 SAME = 1e-6
@@ -59,6 +59,10 @@ def frame(document: Document, rng: np.random.Generator) -> Document:
         if rng.random() < 0.5:
             beam["gradient_per_m"] = [float(rng.uniform(-GRADIENT, GRADIENT) / (2 * radius)), 0.0]
         made["beam"].append(beam)
+    bent = {beam["name"] for beam in made["beam"]}
+    for section in CLEARANCE:
+        made |= {section: [{key: value for key, value in joint.items() if not key.endswith("_link") or value not in bent}
+                           for joint in made[section]]} if section in made else {}
     return made | ({"link": kept} if kept else {})
 
 

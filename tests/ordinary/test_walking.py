@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import atan
 
 import pytest
 
-from walking import row, solved, walker
+import statejump as sj
+from walking import EVENT, Walker, row, solved, walker
 
 LIMIT_S = 60.0
 
@@ -34,3 +36,15 @@ def test_another_friction_is_noticed() -> None:
 def test_a_time_out_is_reported() -> None:
     one = walker("sheet", 37, 0.3)
     assert solved(one, 1e-3)["sentence"] == "more than 0.001 s"
+
+
+def test_beam_on_an_incline_never_settles() -> None:
+    """A beam of 1 km on 100 blocks, 400 N/m, E A = 3e9 N, in every cycle after the first."""
+    one = Walker("incline", 100, 0.3, atan(0.05), 1000.0, 400.0, 3e9, 1.0, 1.17e-5, 80.0)
+    made = one.document()
+    made["beam"] = [{**bar, "second_moments_of_area_m4": [0.1, 0.1]} for bar in made.pop("link")]
+    ends = sj.load(made).reduced().native.cycle_ends["displacement_m"][:, :, 0]
+    # Bars shrink by αΔT while friction holds back one.lost, and grow by αΔT of their cold length: the mean of both.
+    exact = one.apart * one.length_m / one.blocks * (one.expansion - one.lost * (1 + one.expansion / 2))
+    assert exact == pytest.approx(0.153457754722, rel=1e-10)
+    assert (ends[2:] - ends[1:-1]).mean(axis=1) == pytest.approx(exact, abs=4 * one.blocks * EVENT * one.expansion * 1e3)

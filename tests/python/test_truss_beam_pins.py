@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Revolutes on nodes of beams: the node turns the journal or the bearing, as a rigid stub of a link would."""
+"""Revolutes and balls on nodes of beams: the node turns their parts, as a rigid stub of a link would."""
 from __future__ import annotations
 
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from test_truss_beam import STEEL, WARM, clamp, frame, states
-from test_truss_beam_ends import SPACE, refused
+from test_truss_beam_ends import SPACE
 
 from statejump.kinds.loading import parse_case
 from statejump.kinds.truss import motion
@@ -64,12 +64,17 @@ def test_node_turns_journal_and_bearing_as_a_stub_does(dimension: int, sticking:
     assert np.abs(own["displacement_m"][-1] - own["displacement_m"][0]).max() > 1e-6 * size
 
 
-def test_ball_on_a_rotating_node_is_refused() -> None:
-    made = pinned_beams(3, "elastic", stub=False)
-    (revolute,) = made.pop("revolute")
-    made["ball_joint"] = [{"name": "ball", "ball_node": "J", "socket_node": "B", "ball_radius_m": 0.02,
-                           "radial_clearance_m": 1e-4, "friction_coefficient": 0.4}]
-    assert refused(made) == "part_on_rotating_node"
+@pytest.mark.parametrize("sticking", ["elastic", "partial_slip"])
+def test_ball_that_moves_in_a_plane_is_the_revolute(sticking: str) -> None:
+    made = pinned_beams(3, sticking, stub=False)
+    revolute = states(made)
+    del made["revolute"]
+    made["ball_joint"] = [{"name": "pin", "ball_node": "J", "socket_node": "B", "ball_radius_m": PIN["journal_radius_m"],
+                           **{key: value for key, value in PIN.items() if key != "journal_radius_m"}}]
+    ball = states(made)
+    size = np.abs(revolute["displacement_m"]).max()
+    # A ball is second-order accurate in the increment.
+    assert ball["displacement_m"][-1] == pytest.approx(revolute["displacement_m"][-1], abs=1e-4 * size)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

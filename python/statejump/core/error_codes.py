@@ -833,12 +833,6 @@ CODES: dict[str, Code] = {
         cause="that of node {loose_node!r} has no support and no link, spring or joint to a part that has one",
     ),
     "truss_without_joints": Code(cause="the truss has no joints, so it has no contact problem"),
-    "part_on_rotating_node": Code(
-        cause=(
-            "without a link the {part} does not turn, but beams, rigid bodies or hinges turn node {node_wanted!r}: end a "
-            "link there, or use a revolute, which turns with its node"
-        ),
-    ),
     "rotating_part_unsupported": Code(
         cause=(
             "without a link the {part} does not turn, so node {node_wanted!r} must have a support (fixed or "

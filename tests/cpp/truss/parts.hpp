@@ -59,4 +59,23 @@ inline Model sliding_bar(double seconds = 1.0) {
   return model;
 }
 
+/// Replaces the links of a model by soft beams, which rotate its nodes.
+inline void bend_links(Model& model) {
+  for (const Bar& link : model.links) {
+    Beam beam;
+    beam.name = link.name;
+    beam.first = link.first;
+    beam.second = link.second;
+    const Eigen::Vector3d along = model.nodes[static_cast<std::size_t>(link.second)].position -
+                                  model.nodes[static_cast<std::size_t>(link.first)].position;
+    beam.axial_stiffness = 1e2;
+    beam.torsional_stiffness = beam.bending_stiffness_y = beam.bending_stiffness_z = 0.1;
+    beam.stress_free_length = along.norm();
+    beam.axis_y = Eigen::Vector3d::UnitZ().cross(along).normalized();
+    model.beams.push_back(beam);
+  }
+  model.links.clear();
+  measure_rotations(model);
+}
+
 }  // namespace statejump::truss::testing

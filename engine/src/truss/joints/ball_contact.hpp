@@ -7,6 +7,7 @@
 #include <cmath>
 #include <unsupported/Eigen/AutoDiff>
 
+#include "statejump/kernel/rotation.hpp"
 #include "statejump/truss/joints/ball_joint.hpp"
 #include "truss/joints/hertz_contact.hpp"
 
@@ -35,20 +36,20 @@ inline Dual chain(const Dual& number, const ByNormal& of) {
   return {of.value, of.slope * number.derivatives()};
 }
 
-/// Local nodes.
+/// Local sites.
 constexpr std::size_t ball = 0;
 constexpr std::size_t socket = 1;
-constexpr std::size_t ball_far = 2;    ///< Far end of the link that rotates the ball.
-constexpr std::size_t socket_far = 3;  ///< Far end of the link that rotates the socket.
+constexpr std::size_t ball_far = 2;    ///< What rotates the ball: far end of a link, or its node.
+constexpr std::size_t socket_far = 3;  ///< What rotates the socket, likewise.
 
 /// Memory of a ball joint in history(). With partial slip, the contact's memory follows.
 struct BallMemory {
   Eigen::Vector3d offset;  ///< Ball minus socket [m].
-  /// Vector from the far node of the ball's link to the ball [m]; zero without link.
+  /// Vector from the far node of the ball's link to the ball [m], or rotation vector of its node
+  /// [rad]; zero if the ball does not rotate.
   Eigen::Vector3d ball_direction;
-  /// Vector from the far node of the socket's link to the socket [m]; zero without link.
-  Eigen::Vector3d socket_direction;
-  Eigen::Vector3d friction;  ///< t [N].
+  Eigen::Vector3d socket_direction;  ///< Likewise.
+  Eigen::Vector3d friction;          ///< t [N].
   Eigen::Vector3d axis;  ///< Reference direction of the slip memory in the tangent plane; or zero.
   double ball_radius;    ///< At the contact [m].
   double socket_radius;  ///< Likewise.
@@ -79,9 +80,9 @@ struct BallMemory {
 template <class Number>
 struct BallState {
   Vector<Number> offset;
-  Vector<Number> ball_direction;
-  Vector<Number> socket_direction;
-  Vector<Number> force;  ///< On the socket.
+  Vector<Number> ball_direction;    ///< As in BallMemory.
+  Vector<Number> socket_direction;  ///< Likewise.
+  Vector<Number> force;             ///< On the socket.
   Vector<Number> normal;
   Vector<Number> friction;  ///< t, the force across the normal.
   Number distance;
@@ -89,17 +90,25 @@ struct BallState {
   Number ball_radius;
   Number socket_radius;
   Number normal_force;
+  bool ball_turns = false;  ///< Whether ball_direction is the rotation vector of a node.
+  bool socket_turns = false;
 };
 
-/// @param between returns the vector from one local node to another
-template <class Number, class Between>
+/// @param between returns the vector from one local site to another
+/// @param rotation returns the rotation vector of a local site [rad]
+template <class Number, class Between, class Rotation>
 BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force,
-                             const Number& temperature_change, double opening, Between&& between) {
+                             const Number& temperature_change, double opening, Between&& between,
+                             Rotation&& rotation) {
   BallState<Number> s;
   s.offset = between(socket, ball);
   s.ball_direction = s.socket_direction = Vector<Number>::Zero();
   if (joint.ball_link >= 0) s.ball_direction = between(ball_far, ball);
   if (joint.socket_link >= 0) s.socket_direction = between(socket_far, socket);
+  s.ball_turns = joint.ball_turns != 0;
+  s.socket_turns = joint.socket_turns != 0;
+  if (s.ball_turns) s.ball_direction = rotation(ball_far);
+  if (s.socket_turns) s.socket_direction = rotation(socket_far);
   s.force = force;
   const double bore = joint.ball_radius + joint.radial_clearance;
   s.clearance =
@@ -124,6 +133,14 @@ BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force
   s.socket_radius =
       bore * (1.0 + joint.socket_thermal_expansion * temperature_change) + 0.5 * depth;
   return s;
+}
+
+inline BallState<double> ball_state_at(const BallJoint& joint, const Eigen::Vector3d& force,
+                                       const Trial& at) {
+  return ball_state<double>(
+      joint, force, at.temperature_change, at.opening,
+      [&](std::size_t from, std::size_t to) { return at.between(from, to); },
+      [&](std::size_t site) { return Eigen::Vector3d(at.moved[site] / at.frame.arms[site]); });
 }
 
 /// The ratio of an angle to its sine, as a function of the cosine of the angle.
@@ -152,6 +169,50 @@ Vector<Number> turned(const Eigen::Vector3d& before, const Vector<Number>& now) 
   turn = before.cast<Number>().cross(change) *
          Number(chain(cosine, arc_over_sine(value_of(cosine))) * scale);
   return turn;
+}
+
+/// A coefficient of a rotation vector, as a function of the square of the angle.
+inline ByNormal of_square(const kernel::AngleCoefficient& of) {
+  return {of.value, 0.5 * of.slope};
+}
+
+/// Quaternion of a rotation vector [rad], scalar part last.
+template <class Number>
+Eigen::Matrix<Number, 4, 1> quaternion(const Vector<Number>& vector) {
+  const Number square = vector.squaredNorm();
+  const double squared = value_of(square);
+  const double half = 0.5 * std::sqrt(squared);
+  // sin(a/2)/a; the series with two terms is exact to rounding.
+  const bool is_small = squared < 1e-4;
+  const double part =
+      is_small ? 0.5 - squared / 48.0 * (1.0 - squared / 80.0) : std::sin(half) / (2.0 * half);
+  const double slope =
+      is_small ? -1.0 / 48.0 + squared / 1920.0 : (0.5 * std::cos(half) - part) / (2.0 * squared);
+  Eigen::Matrix<Number, 4, 1> made;
+  made << vector * Number(chain(square, ByNormal{part, slope})),
+      Number(chain(square, ByNormal{std::cos(half), -0.25 * part}));
+  return made;
+}
+
+/// Rotation from one rotation vector to another, as axis times angle [rad].
+template <class Number>
+Vector<Number> turned_by_node(const Eigen::Vector3d& before, const Vector<Number>& now) {
+  const Eigen::Matrix<Number, 4, 1> to = quaternion(now);
+  const Eigen::Matrix<Number, 4, 1> from = quaternion<double>(before).cast<Number>();
+  const Vector<Number> v = to.template head<3>(), u = from.template head<3>();
+  const Vector<Number> part = v * from[3] - u * to[3] - v.cross(u);
+  const Number cosine = to.dot(from);  // of half the angle
+  return part * Number(2.0 * chain(cosine, arc_over_sine(value_of(cosine))));
+}
+
+/// Generalised force on a rotation vector [rad] that does the work of a moment.
+template <class Number>
+Vector<Number> moment_on(const Vector<Number>& vector, const Vector<Number>& moment) {
+  const Number square = vector.squaredNorm();
+  const kernel::SpinCoefficients c = kernel::spin_coefficients(std::sqrt(value_of(square)));
+  const Vector<Number> once = vector.cross(moment);
+  return moment - once * Number(chain(square, of_square(c.first))) +
+         vector.cross(once) * Number(chain(square, of_square(c.second)));
 }
 
 /// Rotates a vector from the tangent plane of one unit normal into that of another, by the smallest
@@ -189,8 +250,12 @@ BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& sta
   const Vector<Number> before = start.offset.normalized().cast<Number>();
   const Vector<Number> sum = before + now.normal;
   const Vector<Number> middle = sum / Number(sqrt(sum.squaredNorm()));
-  const Vector<Number> ball_turned = turned(start.ball_direction, now.ball_direction);
-  const Vector<Number> socket_turned = turned(start.socket_direction, now.socket_direction);
+  const Vector<Number> ball_turned = now.ball_turns
+                                         ? turned_by_node(start.ball_direction, now.ball_direction)
+                                         : turned(start.ball_direction, now.ball_direction);
+  const Vector<Number> socket_turned =
+      now.socket_turns ? turned_by_node(start.socket_direction, now.socket_direction)
+                       : turned(start.socket_direction, now.socket_direction);
   const Number ball_radius = 0.5 * (start.ball_radius + now.ball_radius);
   const Number socket_radius = 0.5 * (start.socket_radius + now.socket_radius);
   const Number distance = 0.5 * (start.offset.norm() + now.distance);

@@ -42,9 +42,7 @@ HertzContact contact_of(const BallJoint& joint) {
 BallState<double> state_of(const BallJoint& joint, const Trial& trial) {
   const Vector3d force =
       trial.frame.axes * Vector3d(trial.force[0], trial.force[1], trial.force[2]);
-  return detail::ball_state<double>(
-      joint, force, trial.temperature_change, trial.opening,
-      [&](std::size_t from, std::size_t to) { return trial.between(from, to); });
+  return detail::ball_state_at(joint, force, trial);
 }
 
 /// State with derivatives with respect to all unknowns.
@@ -65,9 +63,18 @@ BallState<Dual> dual_state_of(const BallJoint& joint, const Trial& trial) {
     }
     return made;
   };
+  const auto rotation = [&](std::size_t site) {
+    const double scale = 1.0 / trial.frame.arms[site];
+    Vector<Dual> made;
+    for (int k = 0; k < 3; ++k) {
+      made[k] = Dual(scale * trial.moved[site][k], ball_variables, 3 * static_cast<int>(site) + k);
+      made[k].derivatives() *= scale;
+    }
+    return made;
+  };
   return detail::ball_state<Dual>(joint, force,
                                   Dual(trial.temperature_change, ball_variables, temperature),
-                                  trial.opening, between);
+                                  trial.opening, between, rotation);
 }
 
 /// Slip correction, projected onto the tangent plane [m].
@@ -161,6 +168,15 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   if (joint.socket_link >= 0) {
     add_moment(-moment * now.socket_radius, now.socket_direction, made.force[socket],
                made.force[socket_far]);
+  }
+  if (now.ball_turns) {
+    made.force[ball_far] = detail::moment_on<Dual>(now.ball_direction, moment * now.ball_radius) *
+                           Dual(1.0 / trial.frame.arms[ball_far]);
+  }
+  if (now.socket_turns) {
+    made.force[socket_far] =
+        detail::moment_on<Dual>(now.socket_direction, -moment * now.socket_radius) *
+        Dual(1.0 / trial.frame.arms[socket_far]);
   }
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));

@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include "statejump/truss/model.hpp"
+#include "truss/joints/ball_contact.hpp"
+#include "truss/joints/relative_rotation.hpp"
 #include "truss/parts.hpp"
 
 namespace statejump::truss {
@@ -22,6 +24,9 @@ std::span<const Parameter<BallJoint>> BallJoint::parameters() {
       {"ball_link", "ball link", "-", Allowed::link_or_none, "the case's links", &B::ball_link},
       {"socket_link", "socket link", "-", Allowed::link_or_none, "the case's links",
        &B::socket_link},
+      {"ball_turns", "ball turns with its node", "-", Allowed::flag, "the case", &B::ball_turns},
+      {"socket_turns", "socket turns with its node", "-", Allowed::flag, "the case",
+       &B::socket_turns},
       {"program", "program", "-", Allowed::program, "the case", &B::program},
       {"temperature_fraction", "temperature_fraction", "-", Allowed::finite, "the case",
        &B::temperature_fraction},
@@ -63,6 +68,8 @@ void BallJoint::validate(const Model& model) const {
   };
   check_link(ball_link, ball_node, "ball link");
   check_link(socket_link, socket_node, "socket link");
+  check(!ball_turns || ball_link < 0, "ball_turns", ball_turns, "0 with a link");
+  check(!socket_turns || socket_link < 0, "socket_turns", socket_turns, "0 with a link");
   check(std::isfinite(hertz_stiffness) || std::isinf(mindlin_stiffness), "mindlin_stiffness",
         mindlin_stiffness, "infinite, because hertz_stiffness is");
   check(!partial_slip || std::isfinite(mindlin_stiffness), "partial_slip", partial_slip,
@@ -76,13 +83,9 @@ void BallJoint::validate(const Model& model) const {
 
 JointFrame BallJoint::frame(const Model& model) const {
   JointFrame frame;
-  const auto far_end = [&](int link, int node) {
-    if (link < 0) return -1;
-    const Bar& part = model.links[index(link)];
-    return part.first == node ? part.second : part.first;
-  };
-  frame.nodes = {ball_node, socket_node, far_end(ball_link, ball_node),
-                 far_end(socket_link, socket_node)};
+  frame.nodes = {ball_node, socket_node, -1, -1};
+  detail::turn_part(model, detail::ball_far, ball_link, ball_turns, ball_node, frame);
+  detail::turn_part(model, detail::socket_far, socket_link, socket_turns, socket_node, frame);
   frame.node_count = 4;
   frame.forces = 3;
   frame.program = program;

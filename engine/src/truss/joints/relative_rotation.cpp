@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "statejump/truss/model.hpp"
+#include "truss/parts.hpp"
+
 namespace statejump::truss::detail {
 
 using Eigen::Matrix3d;
@@ -37,6 +40,18 @@ RotationAt rotation_at(const Vector3d& turned) {
 }
 
 }  // namespace
+
+void turn_part(const Model& model, std::size_t far, int link, int with_node, int node,
+               JointFrame& frame) {
+  if (link >= 0) {
+    const Bar& part = model.links[index(link)];
+    frame.nodes[far] = part.first == node ? part.second : part.first;
+  } else if (with_node != 0) {
+    frame.nodes[far] = rotation_site(model, node);
+    frame.rotates[far] = true;
+    frame.arms[far] = model.nodes[index(node)].arm;
+  }
+}
 
 double node_angle(const Trial& trial, std::size_t site, const Vector3d& axis) {
   return angle_about(rotation_at(rotation_vector(trial, site)), axis);

@@ -36,6 +36,13 @@ double angle_about(const RotationAt& at, const Eigen::Vector3d& axis);
 /// Gradient of angle_about().
 SpinGradient angle_gradient(const RotationAt& at, const Eigen::Vector3d& axis);
 
+/// Sets the site of a joint that rotates its part at a node.
+/// @param far local site
+/// @param link link whose far end rotates the part; −1: none
+/// @param with_node whether the rotation of the node rotates the part
+void turn_part(const Model& model, std::size_t far, int link, int with_node, int node,
+               JointFrame& frame);
+
 /// Angle of a node about a fixed axis, and its derivatives by the displacement of the rotation
 /// site.
 struct NodeTurn {

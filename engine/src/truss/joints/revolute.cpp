@@ -406,18 +406,8 @@ int ClearanceRevolute::history() const {
 JointFrame ClearanceRevolute::frame(const Model& model) const {
   JointFrame frame;
   frame.nodes = {journal_node, bearing_node, -1, -1};
-  const auto turns = [&](std::size_t far, int link, int with_node, int node) {
-    if (link >= 0) {
-      const Bar& part = model.links[index(link)];
-      frame.nodes[far] = part.first == node ? part.second : part.first;
-    } else if (with_node != 0) {
-      frame.nodes[far] = rotation_site(model, node);
-      frame.rotates[far] = true;
-      frame.arms[far] = model.nodes[index(node)].arm;
-    }
-  };
-  turns(journal_far, journal_link, journal_turns, journal_node);
-  turns(bearing_far, bearing_link, bearing_turns, bearing_node);
+  detail::turn_part(model, journal_far, journal_link, journal_turns, journal_node, frame);
+  detail::turn_part(model, bearing_far, bearing_link, bearing_turns, bearing_node, frame);
   frame.node_count = 4;
   frame.forces = 2;
   frame.program = program;

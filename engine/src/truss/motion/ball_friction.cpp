@@ -10,8 +10,7 @@ namespace {
 
 /// State of a ball without forces.
 BallState<double> state_of(const BallJoint& joint, const Trial& at) {
-  return ball_state<double>(joint, Vector3d::Zero(), at.temperature_change, at.opening,
-                            [&](std::size_t from, std::size_t to) { return at.between(from, to); });
+  return ball_state_at(joint, Vector3d::Zero(), at);
 }
 
 }  // namespace

@@ -39,9 +39,9 @@ def check_references(case: TrussSections) -> None:
     _members(case)
     _alternatives(case)
     rotating = rotating_nodes(case)
-    turned = node_places.called(sorted(rotating))
-    around = Around(node_places, link_places, _held(case), turned[turned != UNKNOWN],
-                    node_places.of(case.link, "nodes"))
+    turns, rotated = _held(case), node_places.called(sorted(rotating))
+    turns[rotated[rotated != UNKNOWN]] = True
+    around = Around(node_places, link_places, turns, node_places.of(case.link, "nodes"))
     for kind in (*JOINTS, *ELEMENTS):
         for item in where_wrong(kind.listed(case), partial(kind.may_be_wrong_references, around=around)):
             kind.check_references(item, nodes, links, rotating)

@@ -64,8 +64,7 @@ class Around:
 
     nodes: ItemIndex
     links: ItemIndex
-    held: np.ndarray  # (nodes,) bool: it has a support
-    rotating: np.ndarray  # (k,) indices of the nodes that beams, rigid bodies or hinges rotate
+    turns: np.ndarray  # (nodes,) bool: it determines the rotation of its part: it has a support, or beams rotate it
     link_nodes: np.ndarray  # (links, k) indices of the nodes of each link
 
 

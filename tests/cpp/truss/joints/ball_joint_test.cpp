@@ -23,6 +23,33 @@ TEST(BallJoint, GradientsAreThoseOfItsForces) {
   }
 }
 
+TEST(BallJoint, GradientsByRotationsOfNodesAreThoseOfItsForces) {
+  Pressed pressed;
+  bend_links(pressed.model);
+  BallJoint& joint = std::get<BallJoint>(pressed.model.joints[0]);
+  joint.ball_link = joint.socket_link = -1;
+  joint.ball_turns = joint.socket_turns = 1;
+  const detail::System system(pressed.model);
+  ASSERT_EQ(system.displacements(), 24);
+  // Six displacements of a node instead of three; both nodes of the joint have large rotations.
+  const auto widened = [&](const Eigen::VectorXd& from) {
+    Eigen::VectorXd to(system.unknowns());
+    for (int n = 0; n < 4; ++n) to.segment<3>(6 * n) = from.segment<3>(3 * n);
+    to.segment<3>(3) = to.segment<3>(9) = Vector3d(2e-5, -1e-5, 3e-5);
+    to.segment<3>(15) = Vector3d(0.1, -0.2, 0.3) * 0.05;
+    to.segment<3>(21) = Vector3d(-0.3, 0.1, 0.2) * 0.05;
+    to.tail<3>() = from.tail<3>();
+    return to;
+  };
+  for (const double loaded : {4.0, 7.0}) {
+    Eigen::VectorXd before = widened(pressed.before(loaded));
+    before.segment<3>(15) += Vector3d(-3e-6, 1e-6, 2e-6);
+    before.segment<3>(21) += Vector3d(2e-6, -4e-6, 1e-6);
+    check_gradients(pressed.model, widened(pressed.z), before,
+                    {JointStatus::stick, JointStatus::slip_plus, JointStatus::open}, 1e-8, 1e-4);
+  }
+}
+
 TEST(BallJoint, InAPlaneHoweverTurnedItIsTheRevolute) {
   const Path planar = solve(rib(false, Matrix3d::Identity()));
   for (const Vector3d& axis : {Vector3d(0, 0, 1), Vector3d(1, 2, -2), Vector3d(-3, 0.5, 1)}) {

@@ -61,28 +61,6 @@ TEST(Revolute, GradientsAreThoseOfItsForces) {
   }
 }
 
-/// The links of a model replaced by soft beams, whose nodes turn journal and bearing.
-void turn_by_nodes(Model& model) {
-  for (const Bar& link : model.links) {
-    Beam beam;
-    beam.name = link.name;
-    beam.first = link.first;
-    beam.second = link.second;
-    const Eigen::Vector3d along = model.nodes[static_cast<std::size_t>(link.second)].position -
-                                  model.nodes[static_cast<std::size_t>(link.first)].position;
-    beam.axial_stiffness = 1e2;
-    beam.torsional_stiffness = beam.bending_stiffness_y = beam.bending_stiffness_z = 0.1;
-    beam.stress_free_length = along.norm();
-    beam.axis_y = Eigen::Vector3d::UnitZ().cross(along).normalized();
-    model.beams.push_back(beam);
-  }
-  model.links.clear();
-  ClearanceRevolute& joint = std::get<ClearanceRevolute>(model.joints[0]);
-  joint.journal_link = joint.bearing_link = -1;
-  joint.journal_turns = joint.bearing_turns = 1;
-  measure_rotations(model);
-}
-
 TEST(Revolute, GradientsByRotationsOfNodesAreThoseOfItsForces) {
   for (const int partial_slip : {0, 1}) {
     Model model = rib();
@@ -90,7 +68,9 @@ TEST(Revolute, GradientsByRotationsOfNodesAreThoseOfItsForces) {
     ClearanceRevolute& joint = std::get<ClearanceRevolute>(model.joints[0]);
     joint.partial_slip = partial_slip;
     joint.axis = Eigen::Vector3d(0.1, -0.2, 1.0).normalized();
-    turn_by_nodes(model);
+    testing::bend_links(model);
+    joint.journal_link = joint.bearing_link = -1;
+    joint.journal_turns = joint.bearing_turns = 1;
     const detail::System system(model);
     ASSERT_EQ(system.displacements(), 24);
     Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);

@@ -31,7 +31,7 @@ namespace statejump::truss {
 ///
 /// A straight link rotates the part on its end without spin about its own axis, as in a DEM. The
 /// moment of friction about that axis therefore has no effect. If several links end at a node, the
-/// link named in the joint rotates the part.
+/// link named in the joint rotates the part. A node of beams rotates its part with all its spin.
 ///
 /// **Step.** Slide and rotations of a step are evaluated at its middle. In slip, the direction of
 /// friction rotates towards the slide along a tractrix, which is exact for a straight slide and a
@@ -54,6 +54,8 @@ struct BallJoint {
   int socket_node = 0;
   int ball_link = -1;                   ///< Rotates the ball; −1: none.
   int socket_link = -1;                 ///< Rotates the socket; −1: none.
+  int ball_turns = 0;                   ///< 1: its node rotates the ball, no link.
+  int socket_turns = 0;                 ///< 1: its node rotates the socket, no link.
   double ball_radius = 0.0;             ///< R1 at ΔT = 0 [m], > 0.
   double radial_clearance = 0.0;        ///< c = R2 − R1 at ΔT = 0 [m], > 0.
   double ball_thermal_expansion = 0;    ///< [1/K].

@@ -20,13 +20,13 @@ from statejump.schema.items import Item
 @definition
 class BallJoint(Item):
     """A ball joint with clearance and Coulomb friction in a spatial truss: the ball, at one node, moves in the socket,
-    at another. A link carries and rotates each part, without spin about its own axis; without a link a part does not
-    rotate."""
+    at another. A link carries and rotates each part, without spin about its own axis; without a link, a part rotates
+    with its node where beams, rigid bodies or hinges rotate that, and does not rotate elsewhere."""
 
     socket_node: str = text(..., "where the socket's centre is")
     ball_node: str = text(..., "where the ball's centre is")
-    socket_link: str | None = text(None, "whose end carries the socket; none: it does not turn")
-    ball_link: str | None = text(None, "whose end carries the ball; none: it does not turn")
+    socket_link: str | None = text(None, "whose end carries the socket; none: it turns with its node, if beams end there")
+    ball_link: str | None = text(None, "whose end carries the ball; none: it turns with its node, if beams end there")
     ball_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
     radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
     friction_coefficient: float = parameter(..., "-", 0, 10, USER)
@@ -45,8 +45,8 @@ class BallJoints(RoundArrays):
 
     socket_node: np.ndarray  # int
     ball_node: np.ndarray  # int
-    socket_link: np.ndarray  # int, GROUND: the socket does not rotate
-    ball_link: np.ndarray  # int, GROUND: the ball does not rotate
+    socket_link: np.ndarray  # int, GROUND: its node rotates the socket, or nothing does
+    ball_link: np.ndarray  # int, GROUND: likewise
     ball_radius_m: np.ndarray
     ball_thermal_expansion_per_K: np.ndarray
     socket_thermal_expansion_per_K: np.ndarray

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import GROUND, unit
+from statejump.kinds.truss.arrays import unit
 from statejump.kinds.truss.joints.protocol import (
     ALUMINIUM, BLACK, USER, AboutAxis, Contacts, ItemColumn, Sampled, Symbol, scaled,
 )
@@ -71,7 +71,6 @@ class RevoluteType(AboutAxis[Revolute, Revolutes], RoundParts[Revolute, Revolute
     varied = ("friction_coefficient", "radial_clearance_m", "journal_radius_m")
     noun = "revolute joint"
     inner, outer = "journal", "bearing"
-    turns_with_nodes = True
     eccentricity, normal_force, friction_force = "eccentricity_m", "normal_force_N", "friction_force_N"
 
     def check_geometry(self, truss: ResolvedTruss, joints: Revolutes, ranges_K: np.ndarray) -> None:
@@ -84,9 +83,7 @@ class RevoluteType(AboutAxis[Revolute, Revolutes], RoundParts[Revolute, Revolute
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Revolutes) -> dict[str, Any]:
         sticks = {} if truss.sticking != "rigid" else {"mindlin_stiffness_N_per_m15": np.full(len(joints.names), inf)}
-        turns = {f"{part}_turns": (getattr(joints, f"{part}_link") == GROUND)
-                 & truss.nodes.rotates[getattr(joints, f"{part}_node")] for part in self.parts}
-        return {**super().engine_arrays(truss, joints), **sticks, **turns}
+        return {**super().engine_arrays(truss, joints), **sticks}
 
     def contacts(self, run: Sampled, joints: Revolutes) -> Contacts:
         normal = self.normals(run)

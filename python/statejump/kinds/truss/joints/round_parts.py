@@ -51,7 +51,6 @@ class RoundParts(JointType[ItemType, ArraysType]):
     normal_force: ClassVar[str]
     friction_force: ClassVar[str]
     has_axis: ClassVar[bool] = True  # whether its arrays have the axis of rotation of both parts
-    turns_with_nodes: ClassVar[bool] = False  # without a link, a node that rotates turns its part
     has_temperature = True
     has_contacts = True
 
@@ -94,6 +93,8 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return {
             "hertz_stiffness_N_per_m15": np.where(joints.rigid, inf, self.hertz_stiffness(joints)),
             "mindlin_stiffness_N_per_m15": np.where(joints.rigid, inf, self.mindlin_stiffness(joints)),
+            **{f"{part}_turns": (getattr(joints, f"{part}_link") == GROUND)
+               & truss.nodes.rotates[getattr(joints, f"{part}_node")] for part in self.parts},
             "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0) & ~joints.rigid,
         }
 
@@ -110,12 +111,8 @@ class RoundParts(JointType[ItemType, ArraysType]):
             node, link = getattr(item, node_key), getattr(item, link_key)
             known_name(node_key, node, node, nodes, "node", **where)
             if link is None:
-                if node in rotating:
-                    if not self.turns_with_nodes:
-                        raise MissingKey(link_key, code="part_on_rotating_node", nodes=(node,), part=part,
-                                         node_wanted=node, **where)
                 # Nothing determines the rotation of this part.
-                elif not nodes[node].fixed and nodes[node].guide_normal is None:
+                if node not in rotating and not nodes[node].fixed and nodes[node].guide_normal is None:
                     raise MissingKey(link_key, code="rotating_part_unsupported", nodes=(node,), part=part,
                                      node_wanted=node, **where)
                 continue
@@ -137,9 +134,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
         wrong = (nodes[0] == nodes[1]) | ((links[0] == links[1]) & (links[0] != NONE))
         for node, link in zip(nodes, links):
             wrong |= (node < 0) | (link == UNKNOWN)
-            held = around.held.copy()
-            held[around.rotating] = self.turns_with_nodes
-            wrong |= np.where(link == NONE, ~held[node], (around.link_nodes[link] != node[:, None]).all(axis=1))
+            wrong |= np.where(link == NONE, ~around.turns[node], (around.link_nodes[link] != node[:, None]).all(axis=1))
         return np.asarray(wrong)
 
     def expands(self, item: ItemType) -> bool:
