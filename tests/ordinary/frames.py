@@ -60,9 +60,9 @@ def frame(document: Document, rng: np.random.Generator) -> Document:
             beam["gradient_per_m"] = [float(rng.uniform(-GRADIENT, GRADIENT) / (2 * radius)), 0.0]
         made["beam"].append(beam)
     bent = {beam["name"] for beam in made["beam"]}
-    for section in CLEARANCE:
-        made |= {section: [{key: value for key, value in joint.items() if not key.endswith("_link") or value not in bent}
-                           for joint in made[section]]} if section in made else {}
+    for joint in (joint for section in CLEARANCE for joint in made.get(section, [])):
+        for key in [key for key, value in joint.items() if key.endswith("_link") and value in bent]:
+            del joint[key]
     return made | ({"link": kept} if kept else {})
 
 

@@ -69,8 +69,9 @@ def test_ball_that_moves_in_a_plane_is_the_revolute(sticking: str) -> None:
     made = pinned_beams(3, sticking, stub=False)
     revolute = states(made)
     del made["revolute"]
-    made["ball_joint"] = [{"name": "pin", "ball_node": "J", "socket_node": "B", "ball_radius_m": PIN["journal_radius_m"],
-                           **{key: value for key, value in PIN.items() if key != "journal_radius_m"}}]
+    pin = {key: value for key, value in PIN.items() if key != "journal_radius_m"}
+    made["ball_joint"] = [{"name": "pin", "ball_node": "J", "socket_node": "B",
+                           "ball_radius_m": PIN["journal_radius_m"], **pin}]
     ball = states(made)
     size = np.abs(revolute["displacement_m"]).max()
     # A ball is second-order accurate in the increment.

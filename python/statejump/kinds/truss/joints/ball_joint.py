@@ -25,8 +25,8 @@ class BallJoint(Item):
 
     socket_node: str = text(..., "where the socket's centre is")
     ball_node: str = text(..., "where the ball's centre is")
-    socket_link: str | None = text(None, "whose end carries the socket; none: it turns with its node, if beams end there")
-    ball_link: str | None = text(None, "whose end carries the ball; none: it turns with its node, if beams end there")
+    socket_link: str | None = text(None, "whose end carries the socket; none: it turns with its node where beams end")
+    ball_link: str | None = text(None, "whose end carries the ball; none: it turns with its node where beams end")
     ball_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
     radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
     friction_coefficient: float = parameter(..., "-", 0, 10, USER)

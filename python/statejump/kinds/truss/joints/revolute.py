@@ -28,8 +28,8 @@ class Revolute(Item):
 
     bearing_node: str = text(..., "where the bearing's centre is")
     journal_node: str = text(..., "where the journal's centre is")
-    bearing_link: str | None = text(None, "whose end carries the bearing; none: it turns with its node, if beams end there")
-    journal_link: str | None = text(None, "whose end carries the journal; none: it turns with its node, if beams end there")
+    bearing_link: str | None = text(None, "whose end carries the bearing; none: it turns with its node where beams end")
+    journal_link: str | None = text(None, "whose end carries the journal; none: it turns with its node where beams end")
     journal_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
     radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
     friction_coefficient: float = parameter(..., "-", 0, 10, USER)
