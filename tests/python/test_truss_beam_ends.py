@@ -278,3 +278,44 @@ def test_refused_hinges() -> None:
     made = hinged(friction_moment_N_m=1.0)
     made["reduced"] = {**made.get("reduced", {}), "sticking": "elastic"}
     assert refused(made) == "hinge_sticking_missing"
+
+
+# ---------------------------------------------------------------- free spins
+
+
+def strut(friction: float = 0.0) -> dict[str, Any]:
+    """A warm strut in two beams between balls; a spring presses it, and its middle node carries a load across."""
+    ball = {"ball_radius_m": 0.02, "radial_clearance_m": 1e-4, "friction_coefficient": friction}
+    made = frame(node("A", (0.0, 0.0, 0.0), "xyz"), node("P", (0.0, 0.0, 0.0)), node("M", (1.0, 0.0, 0.0)),
+                 node("Q", (2.0, 0.0, 0.0)), node("B", (2.0, 0.0, 0.0), "yz"), node("C", (4.0, 0.0, 0.0), "xyz"),
+                 change_K=30.0, dimension=3,
+                 beam=[{"nodes": ["P", "M"], **COLD, **SPACE}, {"nodes": ["M", "Q"], **COLD, **SPACE}],
+                 ball_joint=[{"name": "foot", "socket_node": "A", "ball_node": "P", **ball},
+                             {"name": "head", "socket_node": "B", "ball_node": "Q", **ball}],
+                 spring=[{"name": "spring", "nodes": ["B", "C"], "stiffness_N_per_m": 1e6, "preload_N": -100.0}])
+    made["node"][2]["force_N"] = [0.0, -10.0, 5.0]
+    made["reduced"] = {"sticking": "elastic"}
+    return made
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_free_spin_of_a_strut_is_held_and_noted(friction: float) -> None:
+    made = strut(friction)
+    case = parse_case(made)
+    run = case.reduced()
+    assert [one.code for one in run.warnings if one.code == "free_spin"] == ["free_spin"]
+    assert "beam 'beam 1': free to spin" in next(one for one in run.warnings if one.code == "free_spin")
+    # A support of the rotation about the strut holds the spin too.
+    made["node"][2]["fixed_rotations"] = ["x"]
+    held = states(made)
+    size = np.abs(held["displacement_m"]).max()
+    assert run["displacement_m"][-1] == pytest.approx(held["displacement_m"][-1], abs=1e-9 * size)
+    assert held["displacement_m"][:, 2, 1].min() < -1e-6
+
+
+def test_moment_about_a_free_spin_is_refused() -> None:
+    made = strut()
+    made["node"][2]["moment_N_m"] = [1.0, 0.0, 0.0]
+    with pytest.raises(StatejumpError) as caught:
+        parse_case(made).reduced()
+    assert caught.value.code == "held_mechanism"

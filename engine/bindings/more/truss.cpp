@@ -684,7 +684,9 @@ void bind_types(py::module_& module) {
       [] {
         py::dict tables;
         truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
-          tables[truss::ElementType<k>::table] = type_dict<truss::ElementType<k>>();
+          using Type = truss::ElementType<k>;
+          if (Type::parameters().empty()) return;  // no item of a case
+          tables[Type::table] = type_dict<Type>();
         });
         return tables;
       },

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "path_follower.hpp"
+#include "spins.hpp"
 #include "start_choice.hpp"
 #include "trace.hpp"
 
@@ -52,6 +53,8 @@ const char* to_string(NoteKind kind) {
       return "snap";
     case NoteKind::not_located:
       return "not_located";
+    case NoteKind::free_spin:
+      return "free_spin";
   }
   return "unknown";
 }
@@ -122,10 +125,24 @@ std::vector<double> corners(const Model& model) {
   return times;
 }
 
+/// A note about the beams with spin springs.
+Note spin_note(const Model& model) {
+  Note made{NoteKind::free_spin, 0.0, model.temperature_change(0, 1.0, 0.0), {}};
+  for (const SpinSpring& one : model.spin_springs) made.joints.push_back({"beam", one.name});
+  return made;
+}
+
 }  // namespace
 
-Path solve(const Model& model, const Options& options) {
-  model.validate();
+Path solve(const Model& given, const Options& options) {
+  given.validate();
+  Model with_springs;
+  std::vector<SpinSpring> springs = detail::spin_springs(given);
+  if (!springs.empty()) {
+    with_springs = given;
+    with_springs.spin_springs = std::move(springs);
+  }
+  const Model& model = with_springs.spin_springs.empty() ? given : with_springs;
   for (const Joint& joint : model.joints) {
     const auto* ball = std::get_if<BallJoint>(&joint);
     // Its rows are slides of the deflected contact.
@@ -156,6 +173,7 @@ Path solve(const Model& model, const Options& options) {
   follower.slide_rate = VectorXd::Zero(joints);
   follower.path.unknowns = system.unknowns();
   follower.state.joint_dissipation = VectorXd::Zero(joints);
+  if (!model.spin_springs.empty()) follower.path.notes.push_back(spin_note(model));
   detail::start_as_chosen(follower);
   follower.is_slack = follower.note_slack(0.0, follower.z, follower.origin.statuses);
   system.describe(follower.z, 0.0, follower.origin, follower.state);

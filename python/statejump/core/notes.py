@@ -69,6 +69,9 @@ NOTES: dict[str, str] = {
         "many elements are slack {at}: from there the times at which their joints make and lose contact are resolved "
         "to one increment, and the jump may depend on it; compare with more reduced.increments_per_branch"
     ),
+    "free_spin": (
+        "{named}: free to spin about its own axis, which moves no node and carries no moment; held by a soft spring"
+    ),
     "several_reactions": (
         "{named}: constrain a displacement more than once {at}; the reactions are one solution of many, the "
         "displacements are unique"

@@ -77,10 +77,11 @@ struct State {
 enum class NoteKind : unsigned char {
   large_start,  ///< The first equilibrium is far from the reference configuration: `value` [m].
   slack,  ///< Joints without contact: statics does not determine the position of their elements.
-  not_unique,  ///< Sticking joints constrain a displacement more than once: reactions are not
-               ///< unique.
-  snap,        ///< Unstable slip within the play of joints moved the truss by `value` [m] at once.
-  not_located  ///< So many joints are open that the times of their changes are not located.
+  not_unique,   ///< Sticking joints constrain a displacement more than once: reactions are not
+                ///< unique.
+  snap,         ///< Unstable slip within the play of joints moved the truss by `value` [m] at once.
+  not_located,  ///< So many joints are open that the times of their changes are not located.
+  free_spin     ///< Beams are free to spin about their own axis; see SpinSpring.
 };
 
 /// "large_start", …: the enumerator's name.
@@ -90,7 +91,7 @@ struct Note {
   NoteKind kind;
   double time;                       ///< [s]
   double temperature_change;         ///< ΔT of the first program [K].
-  std::vector<FailureJoint> joints;  ///< Joints to which the note applies.
+  std::vector<FailureJoint> joints;  ///< Joints, or beams, to which the note applies.
   double value = 0.0;                ///< See NoteKind.
 };
 

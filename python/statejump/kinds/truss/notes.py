@@ -13,7 +13,7 @@ from statejump.kinds.truss.resolved import Links, ResolvedTruss
 
 # Codes of the notes about joints, by the engine's kind of note.
 CODES = {"redundant_constraint": "redundant_constraint", "slack": "slack", "snap": "snap", "not_located": "not_located",
-         "not_unique": "several_reactions"}
+         "not_unique": "several_reactions", "free_spin": "free_spin"}
 MOST_NAMED = 8  # largest number of names in a sentence, followed by the number of further names
 
 

@@ -53,6 +53,12 @@ inline Model sample(std::type_identity<TorsionSpring>) {
   return model;
 }
 
+inline Model sample(std::type_identity<SpinSpring>) {
+  Model model = four_nodes();
+  model.spin_springs = {{"spin", 1, 3e3, Eigen::Vector3d(0.2, -0.3, 0.9).normalized()}};
+  return model;
+}
+
 /// Beams with every parameter, one curved in its stress-free shape by its misfit only. The nodes
 /// may rotate about three, two, one and no axes.
 inline Model sample(std::type_identity<Beam>) {
@@ -138,6 +144,9 @@ inline double sample_mass(std::type_identity<TorsionSpring>) {
   return 0.0;
 }
 inline double sample_mass(std::type_identity<Beam>) {
+  return 0.0;
+}
+inline double sample_mass(std::type_identity<SpinSpring>) {
   return 0.0;
 }
 
