@@ -23,11 +23,12 @@ OPTIONS = {"output": "--output", "range": "--range"}
 @click.option("--range", "range_K", metavar="LOW:HIGH", help="ΔT [K] of every member, each by itself, for example "
               "-80:60; default: the programs of the case.")
 @click.option("--attain", is_flag=True, help="Write and simulate the history that attains each bound.")
-@click.option("--no-simulation", is_flag=True, help="Do not simulate the case itself.")
+@click.option("--simulate/--no-simulate", default=None, help="Simulate the case itself for comparison; default: up to "
+              "100 joints.")
 @click.option("--json", "as_json", is_flag=True, help="Print the bounds as JSON.")
 @RESULTS
 @QUIET
-def bounds_command(case_file: Path, output: tuple[str, ...], range_K: str | None, attain: bool, no_simulation: bool,
+def bounds_command(case_file: Path, output: tuple[str, ...], range_K: str | None, attain: bool, simulate: bool | None,
                    as_json: bool, results: Results, quiet: bool) -> None:
     """How far CASE can come back from its first shape, whatever the temperature history, and why not farther.
 
@@ -40,7 +41,7 @@ def bounds_command(case_file: Path, output: tuple[str, ...], range_K: str | None
     case = loaded(case_file, RestBounds)
     with results.folder(f"{case.name}_bounds", case) as folder:
         try:
-            found = require(case, RestBounds).bounds(case, output, range_K, attain, not no_simulation)
+            found = require(case, RestBounds).bounds(case, output, range_K, attain, simulate)
         except NotAllowed as refused:
             refused.key = OPTIONS.get(refused.key or "", refused.key)
             raise

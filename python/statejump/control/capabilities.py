@@ -66,7 +66,7 @@ class RestBounds(Protocol):
     """Bounds of the state jump over any temperature history; see :func:`statejump.kinds.truss.bounds.study.bounds`."""
 
     def bounds(self, case: Any, output: Sequence[str] = (), range_K: str | tuple[float, float] | None = None,
-               attain: bool = False, simulate: bool = True) -> Any: ...
+               attain: bool = False, simulate: bool | None = None) -> Any: ...
 
 
 @capability("truss creak")

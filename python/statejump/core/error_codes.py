@@ -618,12 +618,12 @@ CODES: dict[str, Code] = {
     ),
     "bounds_of_clearance": Code(
         what="{joint_with_clearance} has clearance",
-        cause="not yet: bounds need given normal forces",
+        cause="not yet: bounds of joints with clearance (class C)",
         remedy="simulate the histories that matter: 'statejump truss answers'",
     ),
     "bounds_of_stop": Code(
         what="{part} may {change} at the reference temperature",
-        cause="not yet: bounds need stops, plays and cables that keep their state",
+        cause="not yet: bounds across stops, plays and slack cables (class B)",
         remedy="simulate the histories that matter: 'statejump truss answers'",
     ),
     "bounds_of_mechanism": Code(
@@ -635,8 +635,7 @@ CODES: dict[str, Code] = {
         what="no joint has friction", cause="every history returns to the same state", remedy="no bound is needed",
     ),
     "bounds_not_attained": Code(
-        what="no temperatures of single members lead to the bound of {output}",
-        cause="{why}",
+        what="no temperatures of single members up to {most_K:g} K lead to the bound of {output}",
         remedy="leave --attain out",
     ),
     "bounds_bad_output": Code(cause="must be node:NAME or node:NAME.x, .y, .z with a free direction"),

@@ -133,13 +133,16 @@ def margin(of: Sliding) -> Margin:
     bars = _bars(of)
     arms = _arms(of)
     rows = vstack([bars.along, bars.across, arms.rows]).tocsr()
+    rotates = vstack([bars.across, arms.rows])
+    if not rotates.nnz or abs(rotates).max() < ZERO:
+        return _exact()
     if rows.shape[0] > MOST_ROWS:
         return Margin("estimate", "the truss has too many elements for a margin of exact geometry", nothing)
     friction = np.abs(rows @ of.by_friction) @ of.limit_N
     across = friction[bars.count:]
     if not np.any(across > ZERO * np.concatenate((np.tile(bars.length_m, bars.across.shape[0] // max(bars.count, 1)),
                                                   np.tile(arms.radius_m, 2)))):
-        return Margin("exact", "no element rotates, so the truss is linear between its rest states", nothing)
+        return _exact()
     by_defect = of.solve(rows.T.toarray())
     compliance = np.abs(rows @ by_defect)
     elastic = rows[:bars.count] @ by_defect
@@ -151,6 +154,10 @@ def margin(of: Sliding) -> Margin:
                       nothing)
     return Margin("linear", "elements rotate; the margin covers exact geometry near the linear rest states", found,
                   by_defect)
+
+
+def _exact() -> Margin:
+    return Margin("exact", "no element rotates, so the truss is linear between its rest states", np.zeros(0))
 
 
 def _iterated(defects: Callable[[np.ndarray], np.ndarray | None], size: int) -> np.ndarray | None:

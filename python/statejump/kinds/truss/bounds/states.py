@@ -13,17 +13,13 @@ from statejump.kinds.truss.bounds.sliding import Sliding
 Ranges = Callable[[np.ndarray], np.ndarray]
 
 
-def kept_states(of: Sliding, slides_m: np.ndarray, ranges: Ranges) -> list[str]:
+def kept_states(of: Sliding, ranges: Ranges) -> list[str]:
     """Return one sentence for each kind of stop, play or cable that keeps its state in all rest states.
 
-    :param slides_m: half ranges of the slides of all joints
-    :param ranges: half ranges of other rows
+    :param ranges: half ranges of linear functions of the dofs in all rest states
     :raises StatejumpError: one may change its state
     """
-    facts: list[str] = []
-    for check in (_sliders, _hinges):
-        facts += check(of, slides_m)
-    return facts + list(_cables(of, ranges))
+    return [*_sliders(of, ranges), *_hinges(of, ranges), *_cables(of, ranges)]
 
 
 def _refuse(of: Sliding, part: str, change: str) -> StatejumpError:
@@ -34,25 +30,30 @@ def _of_section(of: Sliding, section: str) -> np.ndarray:
     return np.array([index for index, joint in enumerate(of.joints) if joint.section == section], dtype=int)
 
 
-def _sliders(of: Sliding, half_m: np.ndarray) -> Iterator[str]:
+def _sliders(of: Sliding, ranges: Ranges) -> Iterator[str]:
     which, sliders = _of_section(of, "slider"), of.truss.sliders
     for index in np.flatnonzero(sliders.play_m > 0)[:1]:
         raise _refuse(of, str(of.joints[which[index]]), "open its play")
-    slide, half = of.slide_m[which], half_m[which]
+    stopped = np.flatnonzero(sliders.have_stops)
+    if not len(stopped):
+        return
+    which = which[stopped]
+    slide, half = of.slide_m[which], ranges(of.slides[which].toarray())
     # A stop that is just reached is not certainly open.
-    hits = (slide + half >= sliders.clearance_plus_m) | (slide - half <= -sliders.clearance_minus_m)
+    hits = ((slide + half >= sliders.clearance_plus_m[stopped])
+            | (slide - half <= -sliders.clearance_minus_m[stopped]))
     for index in np.flatnonzero(hits)[:1]:
         raise _refuse(of, str(of.joints[which[index]]), "reach a stop")
-    if sliders.have_stops.any():
-        yield "stops of sliders stay open in all rest states"
+    yield "stops of sliders stay open in all rest states"
 
 
-def _hinges(of: Sliding, half_m: np.ndarray) -> Iterator[str]:
+def _hinges(of: Sliding, ranges: Ranges) -> Iterator[str]:
     for section in ("latch_hinge", "hinge"):
         which, hinges = _of_section(of, section), of.truss.joints[section]
         if not len(which):
             continue
-        rotation, half = of.slide_m[which] / of.radius_m[which], half_m[which] / of.radius_m[which]
+        rotation = of.slide_m[which] / of.radius_m[which]
+        half = ranges(of.slides[which].toarray()) / of.radius_m[which]
         edge, stiff = hinges.deadband_rad, hinges.stiffness_N_m_per_rad > 0
         inside, beyond = np.abs(rotation) + half < edge, np.abs(rotation) - half > edge
         for index in np.flatnonzero(stiff & (edge > 0) & ~inside & ~beyond)[:1]:
