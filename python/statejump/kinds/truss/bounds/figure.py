@@ -36,6 +36,29 @@ def bars(name: str, rows: Sequence[tuple[str, float, float, float, float]]) -> A
         axes.set_xlim(0, 1.15 * float(np.nanmax(values)) * factor)
         axes.set_xlabel(f"difference between two rest states [{unit}]")
         axes.grid(False, axis="y")
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.28), ncols=2, frameon=False)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.45 / len(rows)), ncols=2, frameon=False)
         figure.suptitle(f"{name}: how far the truss may come back", fontsize=10)
+    return figure
+
+
+def staircase(name: str, output: str, bound_m: float, highest_K: float, lowest_K: float, factors: np.ndarray,
+              spread_m: np.ndarray) -> Any:
+    """Draw the spread of an output over the width of the temperature range.
+
+    :param bound_m: spread over any history
+    :param highest_K: highest ΔT of the range of factor 1; ``lowest_K``: its lowest ΔT
+    """
+    factor, unit = readable(bound_m, "m")
+    with style():
+        figure, axes = panels(1, 1, (6.4, 3.6))
+        width = (highest_K - lowest_K) * factors
+        axes.plot(width, spread_m * factor, "o-", color=BARS[1][1], markersize=3.5, label=BARS[1][0])
+        axes.axhline(bound_m * factor, color=BARS[0][1], linestyle=(0, (5, 2)), label=BARS[0][0])
+        axes.axvline(highest_K - lowest_K, color="0.4", linewidth=1, linestyle=":", label="range of the command")
+        axes.set_xscale("log")
+        axes.set_ylim(0, 1.1 * bound_m * factor)
+        axes.set_xlabel("width of the temperature range [K]")
+        axes.set_ylabel(f"spread of {output} [{unit}]")
+        axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.9), frameon=False)
+        figure.suptitle(f"{name}: {output} over the temperature range", fontsize=10)
     return figure

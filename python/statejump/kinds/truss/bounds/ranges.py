@@ -7,7 +7,7 @@ while joint i slips at λ_i = +f_i. Ranges of p that contain the start and repro
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf, nan
 from typing import Any
 
@@ -56,6 +56,10 @@ class Temperatures:
         made[which, np.arange(len(which))] = 1 / fractions[which]
         return Temperatures(f"every member between {box[0]:g} and {box[1]:g} K by itself", made,
                             np.full(len(which), box[0]), np.full(len(which), box[1]))
+
+    def scaled(self, factor: float) -> Temperatures:
+        """Return the variables in intervals that are wider by a factor."""
+        return replace(self, lowest_K=factor * self.lowest_K, highest_K=factor * self.highest_K)
 
     def peak(self, gain: np.ndarray) -> tuple[float, float]:
         """Return the lowest and the highest value of gain · ΔT of the elements."""

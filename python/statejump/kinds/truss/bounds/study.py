@@ -16,7 +16,7 @@ from statejump.core.figures import save
 from statejump.core.output import write_atomically
 from statejump.core.tables import Shown, write_csv
 from statejump.core.units import text
-from statejump.kinds.truss.bounds.figure import bars
+from statejump.kinds.truss.bounds.figure import bars, staircase
 from statejump.kinds.truss.bounds.history import Attained, attained
 from statejump.kinds.truss.bounds.margin import Margin, margin
 from statejump.kinds.truss.bounds.outputs import Output, chosen
@@ -28,6 +28,9 @@ from statejump.kinds.truss.solve import solve
 
 ROUNDED = 1e-12  # of the largest gain
 MOST_SIMULATED = 100  # joints of a case that is simulated for comparison
+POINTS = 24  # ranges of the picture of the spread over the temperature range
+MOST_FACTOR = 200.0  # on the range up to which joints settle
+REACHED = 0.999  # of the bound over any history, where this picture ends
 RANKED = 10  # joints in the printed table
 
 
@@ -79,6 +82,7 @@ class Bounds:
     verdict: Verdict
     temperatures: Temperatures
     attained: Mapping[str, Attained]
+    pictures_range: bool = False
 
     @property
     def guarantee(self) -> str:
@@ -134,7 +138,33 @@ class Bounds:
         with write_atomically(folder / "bounds.json") as stream:
             json.dump(self.record(), stream, indent=1)
         cases = [one.case.save(folder / f"{one.case.name}.toml") for one in self.attained.values()]
-        return [table, joints, folder / "bounds.json", *cases, *save(self.plot(), folder, "bounds")]
+        pictures = save(self.plot(), folder, "bounds")
+        if self.pictures_range:
+            pictures += save(self.plot_range(), folder, "bounds_over_range")
+        return [table, joints, folder / "bounds.json", *cases, *pictures]
+
+    def over_range(self, points: int = POINTS) -> tuple[np.ndarray, np.ndarray]:
+        """Return factors on the temperature range, and the spread [m] of the first output within each range.
+
+        The factors begin at half of the limit up to which joints settle, and end where the spread reaches the bound.
+        """
+        first, factor = self.bounds[0], self.verdict.factor
+        if not np.isfinite(factor):
+            return np.zeros(0), np.zeros(0)
+        gain, _ = self.of.gains(first.output.row(self.of))
+        factors, spreads = [], []
+        for one in np.geomspace(0.25 * factor, MOST_FACTOR * factor, points):
+            factors.append(one)
+            spreads.append(within(self.of, self.temperatures.scaled(one)).spread(gain)[0])
+            if not spreads[-1] < REACHED * first.spread_m:
+                break
+        return np.array(factors), np.array(spreads)
+
+    def plot_range(self) -> Any:
+        """Return the picture of the spread over the temperature range."""
+        first = self.bounds[0]
+        return staircase(self.of.truss.name, first.output.name, first.spread_m, self.temperatures.highest_K.max(),
+                         self.temperatures.lowest_K.min(), *self.over_range())
 
     def plot(self) -> Any:
         """Return the picture of the bounds."""
@@ -179,7 +209,8 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
         if reached is not None:
             histories[one.name] = reached
         made.append(_bound(of, one, exact, found, temperatures, path, reached))
-    return Bounds(of, exact, facts, made, found.verdict, temperatures, histories)
+    return Bounds(of, exact, facts, made, found.verdict, temperatures, histories,
+                  pictures_range=box is not None and np.isfinite(found.verdict.factor))
 
 
 def _bound(of: Sliding, output: Output, exact: Margin, found: WithinRange, temperatures: Temperatures,
