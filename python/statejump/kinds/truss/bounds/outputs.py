@@ -53,7 +53,7 @@ def _named(of: Sliding, name: str) -> list[Output]:
     known_name("output", name, node, dict.fromkeys(nodes), "node", case=of.truss.name)
     index = nodes.index(node)
     found = [Output(f"node:{node}.{axis}", index, AXES.index(axis)) for axis in axes
-             if of.of_nodes[3 * index + AXES.index(axis)].nnz]
+             if abs(of.of_nodes[3 * index + AXES.index(axis)]).sum() > 0]
     if not found:
         raise NotAllowed("output", name, code="bounds_bad_output")
     return found

@@ -21,7 +21,7 @@ class Polytope:
     def highest_value(self, cost: np.ndarray) -> float:
         """Return an upper bound of cost · x.
 
-        By weak duality, max cost·x <= y·b + max (cost − Aᵀy)·x over the box of x, for any y >= 0. HiGHS only proposes y.
+        By weak duality, max cost·x <= y·b + max (cost − Aᵀy)·x over the box of x, for any y >= 0. HiGHS proposes y.
         """
         matrix = np.concatenate((self.rows, -self.rows))
         right = np.concatenate((self.most, -self.least))

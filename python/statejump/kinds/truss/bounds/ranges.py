@@ -21,6 +21,7 @@ from statejump.kinds.truss.bounds.sliding import Sliding
 MOST_JOINTS = 100  # of linear programs
 ROUNDS = 25
 WIDER = 1.02  # growth of ranges that do not yet reproduce themselves
+MOST_NARROWED, NARROWED = 5, 1e-3  # rounds that narrow ranges, and the smallest gain of a round
 NEAR = 1e-7  # smallest half range over the slide that friction of the joint itself permits
 SINGULAR = 1e-12
 
@@ -85,7 +86,8 @@ def parsed_range(given: str | tuple[float, float]) -> tuple[float, float]:
     :raises NotAllowed: it is not a range that contains 0
     """
     try:
-        low, high = (float(part) for part in (given.split(":") if isinstance(given, str) else given))
+        parts: Sequence[str | float] = given.split(":") if isinstance(given, str) else given
+        low, high = (float(part) for part in parts)
     except ValueError:
         raise NotAllowed("range", given, code="bounds_bad_range") from None
     if not -inf < low <= 0 <= high < inf or low == high:
@@ -224,13 +226,21 @@ class _LastSlip:
         for _ in range(ROUNDS):
             lower, higher = self._slipped(low, high)
             if np.all(lower >= low) and np.all(higher <= high):
-                return low, high
+                return self._narrowed(low, high)
             low = np.where(lower < low, self.begins + WIDER * (lower - self.begins) - near, low)
             high = np.where(higher > high, self.begins + WIDER * (higher - self.begins) + near, high)
-        low, high = np.full(len(near), -inf), np.full(len(near), inf)
-        for _ in range(3):  # ranges that hold without assumption on those of the others
+        return self._narrowed(np.full(len(near), -inf), np.full(len(near), inf))
+
+    def _narrowed(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return narrower ranges, given ranges that hold at all times."""
+        near = self._near()
+        for _ in range(MOST_NARROWED):
             lower, higher = self._slipped(low, high)
-            low, high = np.maximum(low, np.minimum(lower, self.begins)), np.minimum(high, np.maximum(higher, self.begins))
+            narrower = np.maximum(low, lower - near), np.minimum(high, higher + near)
+            before = high - low
+            low, high = narrower
+            if np.all(before - (high - low) <= NARROWED * (high - low)):
+                break
         return low, high
 
     def _slipped(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -260,6 +270,3 @@ class _LastSlip:
         (most if sign > 0 else least)[joint] = sign * inf  # the range that is sought
         polytope = Polytope(rows, least, most, lowest, highest)
         return polytope.highest_value(sign * rows[joint]) + sign * float(self.slide[joint])
-
-
-__all__: Sequence[str] = ("Temperatures", "Verdict", "WithinRange", "parsed_range", "within")

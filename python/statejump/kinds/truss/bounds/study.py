@@ -94,8 +94,8 @@ class Bounds:
 
     def summary_lines(self) -> list[Shown | str]:
         """Return tables and lines that the command prints."""
-        heads = ["output", "spread [µm]", "margin [%]", "jump [µm]", "in range, linear [µm]", "simulated [µm]", "attained [µm]",
-                 "attained / spread"]
+        heads = ["output", "spread [µm]", "margin [%]", "jump [µm]", "in range, linear [µm]", "simulated [µm]",
+                 "attained [µm]", "attained / spread"]
         rows = [[bound.output.name, _um(bound.spread_m), _number(100 * bound.margin_m / (bound.spread_m or 1.0)),
                  _um(bound.jump_m), _um(bound.range_jump_m), _um(bound.simulated_m), _um(bound.attained_m),
                  _number(bound.attained_m / (bound.spread_m or 1.0), 7)] for bound in self.bounds]
@@ -229,5 +229,3 @@ def _bound(of: Sliding, output: Output, exact: Margin, found: WithinRange, tempe
         simulated_m=nan if path_m is None else abs(float(output.value(path_m[-1]) - output.value(path_m[0]))),
         attained_m=nan if reached is None else reached.spread_m, fraction=parts / (parts.sum() or 1.0),
         peak_thermal_m=temperatures.peak(np.where(np.abs(thermal) < ROUNDED * np.abs(thermal).max(), 0.0, thermal)))
-
-
