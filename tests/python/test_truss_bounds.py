@@ -242,6 +242,24 @@ def test_a_motion_that_only_friction_holds_is_named() -> None:
         bounds(sj.load(loose))
 
 
+def test_a_truss_that_only_friction_keeps_from_buckling_is_refused() -> None:
+    made = document("strut", "Strut", "closed form", 2, 1.0, "triangle", 1, 1.0)
+    made["node"] = [node("A", (0, 0), "xy"), node("B", (0.5, 0), "x"), node("C", (1, 0), "xy")]
+    made["link"] = [{"name": f"L{ends}", "nodes": list(ends), **BAR, "stress_free_length_m": 0.5005}
+                    for ends in ("AB", "BC")]
+    made["slider"] = [{"name": "S", "nodes": ["B"], "axis": [0.0, 1.0], "friction_coefficient": 0.5,
+                       "normal_force_N": 20.0}]
+    force_N = 70e9 * 1e-5 * (0.5 / 0.5005 - 1)  # in each bar, of negative stiffness 2 N/L across
+    for share, stable in ((0.99, False), (1.01, True)):
+        made["spring"] = [{"name": "Y", "nodes": ["B", "D"], "stiffness_N_per_m": -share * 2 * force_N / 0.5}]
+        with_spring = finished(made | {"node": [*made["node"], node("D", (0.5, 1), "xy")]})
+        if stable:
+            assert bounds(sj.load(with_spring), ["node:B.y"], simulate=False).bounds[0].spread_m > 0
+        else:
+            with failing("bounds_of_unstable"):
+                bounds(sj.load(with_spring), simulate=False)
+
+
 def test_wrong_outputs_and_ranges_are_refused() -> None:
     case = sj.load(chain(30.0))
     for output in ("N1", "rms", "node:N1.y"):

@@ -631,12 +631,13 @@ CODES: dict[str, Code] = {
         cause="friction alone bounds no motion",
         remedy="give this motion a stiffness, for example a spring",
     ),
+    "bounds_of_unstable": Code(
+        what="the truss is unstable without friction",
+        cause="its rest states are not those near one equilibrium",
+        remedy="reduce compression, or stiffen the direction in which it gives way",
+    ),
     "bounds_without_friction": Code(
         what="no joint has friction", cause="every history returns to the same state", remedy="no bound is needed",
-    ),
-    "bounds_not_attained": Code(
-        what="no temperatures of single members up to {most_K:g} K lead to the bound of {output}",
-        remedy="leave --attain out",
     ),
     "bounds_bad_output": Code(cause="must be node:NAME or node:NAME.x, .y, .z with a free direction"),
     "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",

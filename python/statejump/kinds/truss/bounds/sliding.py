@@ -24,6 +24,7 @@ from statejump.kinds.truss.solve import engine_items
 
 AXES = "xyz"
 COMPLIANCE = 1e-13  # of guides over the mean stiffness: dependent guides are permitted
+SOFTER = 1e-6  # likewise, where pivots stay on the diagonal: their signs are those of the eigenvalues
 FREE = 1e-13  # stiffness of a mode over that of the stiffest dof, below which the mode is free
 ROUNDS = 5  # of inverse iteration
 
@@ -42,13 +43,18 @@ class Joint:
 class Factors:
     """Solves K q + Hᵀμ = b, H q = 0 for many b."""
 
-    def __init__(self, stiffness: Any, guides: Any) -> None:
+    def __init__(self, stiffness: Any, guides: Any, compliance: float = COMPLIANCE, **options: Any) -> None:
         guides = guides.tocsr()
         guides = guides[np.diff(guides.indptr) > 0]
-        self.size, self.rows, self.scale = stiffness.shape[0], guides.shape[0], stiffness.diagonal().mean()
-        whole = (bmat([[stiffness / self.scale, guides.T], [guides, -COMPLIANCE * identity(self.rows)]], format="csc")
+        self.size, self.rows, self.scale = stiffness.shape[0], guides.shape[0], np.abs(stiffness.diagonal()).mean()
+        whole = (bmat([[stiffness / self.scale, guides.T], [guides, -compliance * identity(self.rows)]], format="csc")
                  if self.rows else csc_matrix(stiffness / self.scale))
-        self.factor = splu(whole, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        self.factor = splu(whole, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, **options)
+
+    @property
+    def stable(self) -> bool:
+        """Whether the stiffness is positive definite where guides permit motion (Sylvester's law of inertia)."""
+        return int((self.factor.U.diagonal() < 0).sum()) <= self.rows
 
     def __call__(self, right: np.ndarray) -> np.ndarray:
         """Return the dofs for forces (n,) or (n, k)."""
@@ -121,8 +127,13 @@ def sliding(case: TrussCase) -> Sliding:
         if np.isnan(limits[index]):
             raise StatejumpError(code="bounds_of_clearance", place=truss.name, case=truss.name,
                                  joint_with_clearance=str(named[index]))
+    for slider in np.flatnonzero(truss.sliders.play_m > 0)[:1]:
+        raise StatejumpError(code="bounds_of_stop", place=truss.name, case=truss.name, change="open its play",
+                             part=f"slider '{truss.sliders.names[slider]}'")
     stiffness, guides = found["stiffness_N_per_m"].tocsc(), found["guides"]
     _refuse_mechanism(truss, stiffness, guides, found["of_nodes"].tocsr())
+    if not Factors(stiffness, guides, SOFTER, diag_pivot_thresh=0.0).stable:
+        raise StatejumpError(code="bounds_of_unstable", place=truss.name, case=truss.name)
     of_joints = {key: found[name][friction] for key, name in (
         ("limit_N", "friction_limit_N"), ("slide_m", "slide_m"), ("full_slip_m", "full_slip_m"),
         ("sticking_N_per_m", "sticking_stiffness_N_per_m"), ("radius_m", "radius_m"))}
@@ -144,7 +155,7 @@ def _refuse_mechanism(truss: ResolvedTruss, stiffness: Any, guides: Any, of_node
     for _ in range(ROUNDS):
         shape = shifted(shape)
         shape /= np.linalg.norm(shape)
-    if shape @ (stiffness @ shape) > FREE * stiffest:
+    if abs(shape @ (stiffness @ shape)) > FREE * stiffest:
         return
     moved = (of_nodes @ shape)[:3 * len(truss.nodes.names)].reshape(-1, 3)
     most = np.argsort(-np.linalg.norm(moved, axis=1), kind="stable")[:3]

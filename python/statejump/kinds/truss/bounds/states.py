@@ -32,8 +32,6 @@ def _of_section(of: Sliding, section: str) -> np.ndarray:
 
 def _sliders(of: Sliding, ranges: Ranges) -> Iterator[str]:
     which, sliders = _of_section(of, "slider"), of.truss.sliders
-    for index in np.flatnonzero(sliders.play_m > 0)[:1]:
-        raise _refuse(of, str(of.joints[which[index]]), "open its play")
     stopped = np.flatnonzero(sliders.have_stops)
     if not len(stopped):
         return

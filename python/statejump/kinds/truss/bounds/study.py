@@ -17,7 +17,7 @@ from statejump.core.output import write_atomically
 from statejump.core.tables import Shown, write_csv
 from statejump.core.units import text
 from statejump.kinds.truss.bounds.figure import bars, staircase
-from statejump.kinds.truss.bounds.history import Attained, attained
+from statejump.kinds.truss.bounds.history import MOST_K, Attained, attained
 from statejump.kinds.truss.bounds.margin import Margin, margin
 from statejump.kinds.truss.bounds.outputs import Output, chosen
 from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict, WithinRange, parsed_range, within
@@ -208,6 +208,8 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
         reached = attained(case, of, one) if attain else None
         if reached is not None:
             histories[one.name] = reached
+        elif attain:
+            facts.append(f"no temperatures of single members up to {MOST_K:g} K lead to the bound of {one.name}")
         made.append(_bound(of, one, exact, found, temperatures, path, reached))
     return Bounds(of, exact, facts, made, found.verdict, temperatures, histories,
                   pictures_range=box is not None and np.isfinite(found.verdict.factor))
