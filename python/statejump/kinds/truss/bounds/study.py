@@ -24,6 +24,7 @@ from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict, WithinRan
 from statejump.kinds.truss.bounds.sliding import Sliding, sliding
 from statejump.kinds.truss.bounds.states import kept_states
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.solve import path as start_of
 from statejump.kinds.truss.solve import solve
 
 ROUNDED = 1e-12  # of the largest gain
@@ -202,7 +203,8 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
     temperatures = Temperatures.of_box(of, box) if box else Temperatures.of_programs(of)
     found = within(of, temperatures)
     simulate = len(of.joints) <= MOST_SIMULATED if simulate is None else simulate
-    path = solve(case).states["displacement_m"] if simulate else None
+    path = (solve(case).states["displacement_m"] if simulate
+            else start_of(of.truss, progress=lambda share: share <= 0).states["displacement_m"][:1])
     made, histories = [], {}
     for one in outputs:
         reached = attained(case, of, one) if attain else None
@@ -216,18 +218,17 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
 
 
 def _bound(of: Sliding, output: Output, exact: Margin, found: WithinRange, temperatures: Temperatures,
-           path_m: np.ndarray | None, reached: Attained | None) -> Bound:
+           path_m: np.ndarray, reached: Attained | None) -> Bound:
     row = output.row(of)
     gain, thermal = of.gains(row)
     parts = np.abs(gain) * of.limit_N
     spread = 2 * float(parts.sum())
-    start = found.start_N
-    jump = spread if start is None else float(parts.sum() + np.abs(gain * start).sum())
+    start = float(output.value(path_m[0]) - output.value(of.displacement_m))
     in_range = found.spread(gain)
     return Bound(
-        output=output, spread_m=spread, jump_m=min(jump, spread),
+        output=output, spread_m=spread, jump_m=min(0.5 * spread + abs(start), spread),
         margin_m=nan if exact.quality == "estimate" else 2 * float(exact.of(row[None])[0]),
         range_spread_m=in_range[0], range_jump_m=in_range[1],
-        simulated_m=nan if path_m is None else abs(float(output.value(path_m[-1]) - output.value(path_m[0]))),
+        simulated_m=nan if len(path_m) < 2 else abs(float(output.value(path_m[-1]) - output.value(path_m[0]))),
         attained_m=nan if reached is None else reached.spread_m, fraction=parts / (parts.sum() or 1.0),
         peak_thermal_m=temperatures.peak(np.where(np.abs(thermal) < ROUNDED * np.abs(thermal).max(), 0.0, thermal)))
