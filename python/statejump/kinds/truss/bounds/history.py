@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import linprog
 
+from statejump.core.errors import StatejumpError
 from statejump.core.start import FRICTIONLESS
 from statejump.kinds.loading import load_case
 from statejump.kinds.truss.bounds.outputs import Output
@@ -24,6 +26,9 @@ LEAST = (1e-9, 1e-2, 0.2)  # contributions of joints, over the largest one, that
 NEARLY = 1e-4  # of the bound that a history may miss
 BEYOND = 1.02  # factor on temperatures that need only be large enough
 ONTO = 1e-9  # relative residual of temperatures that give all slides
+
+# Temperatures (legs, members) at the corners of a history: members, slides by their ΔT, gains of the output.
+Way = Callable[[Sliding, Temperatures, np.ndarray, np.ndarray], np.ndarray | None]
 
 
 @dataclass(frozen=True)
@@ -47,14 +52,18 @@ def attained(case: TrussCase, of: Sliding, output: Output) -> Attained | None:
     heating = of.slides @ of.solve(of.heating_N_per_K @ members.of_elements)
     spread = 2 * float(np.abs(gain) @ of.limit_N)
     found: list[Attained] = []
-    for way in (_all_slides, *(partial(_large_enough, least) for least in LEAST)):
+    ways: list[Way] = [_all_slides, *(partial(_large_enough, least) for least in LEAST)]
+    for way in ways:
         legs = way(of, members, heating, gain)
         if legs is None or np.abs(legs).max() > MOST_K:
             continue
-        found.append(_simulated(_case_of(case, of, members, legs, output), output, float(np.abs(legs).max())))
+        try:
+            found.append(_simulated(_case_of(case, of, members, legs, output), output, float(np.abs(legs).max())))
+        except StatejumpError:  # temperatures beyond the range of a case, or a truss that snaps on the way
+            continue
         if found[-1].spread_m >= (1 - NEARLY) * spread:
             break
-    return max(found, key=lambda one: one.spread_m, default=None)
+    return max(found, key=lambda one: one.spread_m) if found else None
 
 
 def _simulated(case: TrussCase, output: Output, largest_K: float) -> Attained:

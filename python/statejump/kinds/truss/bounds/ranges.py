@@ -6,7 +6,6 @@ while joint i slips at λ_i = +f_i. Ranges of p that contain the start and repro
 """
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, nan
 from typing import Any
@@ -86,8 +85,7 @@ def parsed_range(given: str | tuple[float, float]) -> tuple[float, float]:
     :raises NotAllowed: it is not a range that contains 0
     """
     try:
-        parts: Sequence[str | float] = given.split(":") if isinstance(given, str) else given
-        low, high = (float(part) for part in parts)
+        low, high = map(float, given.split(":")) if isinstance(given, str) else given
     except ValueError:
         raise NotAllowed("range", given, code="bounds_bad_range") from None
     if not -inf < low <= 0 <= high < inf or low == high:
