@@ -13,7 +13,7 @@ import pytest
 import statejump as sj
 from conftest import Outcome
 from failures import failing
-from statejump.kinds.truss.bounds import programs
+from statejump.kinds.truss.bounds import history, programs
 from statejump.kinds.truss.bounds.margin import margin
 from statejump.kinds.truss.bounds.programs import Polytope
 from statejump.kinds.truss.bounds.sliding import sliding
@@ -67,6 +67,13 @@ def test_shipped_cases_reach_their_bound(name: str) -> None:
     assert found.bounds[0].spread_m == pytest.approx(1e-6 * SHIPPED_um[name], rel=1e-6)
     for bound in found.bounds:
         assert bound.attained_m == pytest.approx(bound.spread_m, rel=1e-4)
+
+
+def test_histories_of_single_slides_hold_at_the_lengths_of_hot_links(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "LEAST", ())  # no larger temperatures
+    for name in ("chain_cable", "telescope"):
+        bound = bounds(sj.load(name), attain=True, simulate=False).bounds[0]
+        assert bound.attained_m == pytest.approx(bound.spread_m, rel=1e-6)
 
 
 @pytest.mark.parametrize("sticking", ["elastic", "partial_slip"])
@@ -174,6 +181,26 @@ def test_no_random_history_leaves_the_bounds(seed: int) -> None:
         if np.isfinite(bound.range_spread_m):
             assert np.ptp(values) <= bound.range_spread_m + slack
             assert np.abs(values - values[0]).max() <= bound.range_jump_m + slack
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_random_history_of_a_tripod_leaves_the_bounds(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    made = document("tripod", "Tripod", "random", 3, 1.0, "triangle", 1, 1.0)
+    made["node"] = [node("A", rng.uniform(-0.2, 0.2, 3) + [0, 0, 1])]
+    for foot in range(3):
+        place = np.array([np.cos(2 * foot), np.sin(2 * foot), 0.0])
+        made["node"] += [node(f"F{foot}", place, "yz"), node(f"W{foot}", place + [1, 0, 0], "xyz")]
+        made["link"] += [{"name": f"{one}{foot}", "nodes": [one if one == "A" else f"W{foot}", f"F{foot}"], **BAR}
+                         for one in "AW"]
+        made["slider"].append({"name": f"S{foot}", "nodes": [f"F{foot}"], "axis": [1.0, 0.0, 0.0],
+                               "friction_coefficient": 0.3, "normal_force_N": 10 ** rng.uniform(2, 3.3)})
+    case = finished(made)
+    found = bounds(sj.load(case), simulate=False)
+    assert found.margin.quality == "linear"
+    states = [solve(sj.load(heated(case, rng, 100.0))).states["displacement_m"][[0, -1]] for _ in range(3)]
+    for bound in found.bounds:
+        assert np.ptp(bound.output.value(np.concatenate(states))) <= bound.spread_m * (1 + 1e-7) + bound.margin_m
 
 
 def test_margin_covers_a_lever_that_turns_far() -> None:
