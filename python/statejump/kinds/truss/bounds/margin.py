@@ -127,9 +127,10 @@ def margin(of: Sliding) -> Margin:
     nothing = np.zeros(0)
     for section in ("beam", "torsion_spring"):
         if len(of.truss.elements[section].names):
-            return Margin("estimate", f"the margin of exact geometry is not derived for a {section}", nothing)
-    if len(of.truss.joints["hinge"].names):
-        return Margin("estimate", "the margin of exact geometry is not derived for a hinge", nothing)
+            return Margin("estimate", f"the margin of exact geometry is not derived for [[{section}]]", nothing)
+    for section in ("hinge", "rigid"):  # also, the reactions of their constraints add no geometric stiffness to K
+        if len(of.truss.joints[section].names):
+            return Margin("estimate", f"the margin of exact geometry is not derived for [[{section}]]", nothing)
     bars = _bars(of)
     arms = _arms(of)
     rows = vstack([bars.along, bars.across, arms.rows]).tocsr()
