@@ -424,6 +424,15 @@ def truss_linearised(
     constraints: _Items = ...,
 ) -> dict[str, Any]: ...
 
+def truss_friction_free(
+    nodes: _Items,
+    elements: Mapping[str, _Items],
+    joints: Mapping[str, _Items],
+    programs: Sequence[ThermalProgram],
+    *,
+    constraints: _Items = ...,
+) -> dict[str, Any]: ...
+
 class BoreMesh(metaclass=_pybind11_type):
     def __init__(
         self,

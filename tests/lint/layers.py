@@ -50,7 +50,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "statejump.kinds.statics.figure", "statejump.kinds.statics.files",
         "statejump.kinds.truss.answers.figure", "statejump.kinds.truss.answers.vtk",
         "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak",
-        "statejump.kinds.truss.draw_modes", "statejump.kinds.truss.modes",
+        "statejump.kinds.truss.bounds", "statejump.kinds.truss.draw_modes", "statejump.kinds.truss.modes",
         "statejump.kinds.truss.draw_planar", "statejump.kinds.truss.draw_spatial", "statejump.kinds.truss.figure",
         "statejump.kinds.truss.page", "statejump.kinds.umbrella.figure",
     )),

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../bindings.hpp"
+#include "statejump/truss/friction_free.hpp"
 #include "statejump/truss/modes.hpp"
 #include "statejump/truss/motion.hpp"
 #include "statejump/truss/path.hpp"
@@ -678,6 +679,29 @@ py::dict linearised(const py::dict& nodes, const py::dict& elements, const py::d
   return made;
 }
 
+py::dict friction_free_of(const py::dict& nodes, const py::dict& elements, const py::dict& joints,
+                          std::vector<thermal::Program> programs, const py::dict& constraints) {
+  const truss::Model model = make_model(nodes, elements, joints, constraints, std::move(programs));
+  truss::FrictionFree found;
+  {
+    py::gil_scoped_release unlocked;
+    found = truss::friction_free(model);
+  }
+  py::dict made;
+  made["stiffness_N_per_m"] = std::move(found.stiffness);
+  made["guides"] = std::move(found.guides);
+  made["slides"] = std::move(found.slides);
+  made["heating_N_per_K"] = std::move(found.heating);
+  made["of_nodes"] = std::move(found.of_nodes);
+  made["friction_limit_N"] = std::move(found.friction_limit);
+  made["slide_m"] = std::move(found.slide);
+  made["sticking_stiffness_N_per_m"] = std::move(found.sticking_stiffness);
+  made["full_slip_m"] = std::move(found.full_slip);
+  made["radius_m"] = std::move(found.radius);
+  made["displacement_m"] = Eigen::MatrixX3d(found.displacement.transpose());
+  return made;
+}
+
 void bind_types(py::module_& module) {
   module.def(
       "truss_elements",
@@ -750,12 +774,24 @@ void bind_motion(py::module_& module) {
              "displacements [m] of all nodes, then\nrotation vectors [rad], as functions of q.");
 }
 
+void bind_friction_free(py::module_& module) {
+  module.def("truss_friction_free", friction_free_of, py::arg("nodes"), py::arg("elements"),
+             py::arg("joints"), py::arg("programs"), py::kw_only(),
+             py::arg("constraints") = py::dict(),
+             "Equations about the equilibrium without friction, every friction joint free to slide."
+             "\n\nItems as of truss_path(). Returns sparse matrices of scipy: stiffness_N_per_m, "
+             "guides, slides\n(joints, dofs), heating_N_per_K (dofs, elements), of_nodes; of each "
+             "joint, kind by kind as of\ntruss_joints(): friction_limit_N (NaN: not given), slide_m,"
+             " sticking_stiffness_N_per_m,\nfull_slip_m, radius_m; displacement_m (nodes, 3).");
+}
+
 }  // namespace
 
 void bind_truss(py::module_& module) {
   bind_types(module);
   bind_path(module);
   bind_motion(module);
+  bind_friction_free(module);
 }
 
 }  // namespace statejump::bindings

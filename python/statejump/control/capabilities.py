@@ -2,6 +2,7 @@
 """Capabilities of kinds for design questions; see :mod:`statejump.kinds.protocol`."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -58,6 +59,14 @@ class VibrationModes(Protocol):
     """Natural frequencies and mode shapes; see :class:`statejump.kinds.truss.modes.Modes`."""
 
     def modes(self, case: Any, count: int = 6) -> Any: ...
+
+
+@capability("bounds")
+class RestBounds(Protocol):
+    """Bounds of the state jump over any temperature history; see :func:`statejump.kinds.truss.bounds.study.bounds`."""
+
+    def bounds(self, case: Any, output: Sequence[str] = (), range_K: str | tuple[float, float] | None = None,
+               attain: bool = False, simulate: bool | None = None) -> Any: ...
 
 
 @capability("truss creak")

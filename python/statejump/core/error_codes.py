@@ -616,6 +616,33 @@ CODES: dict[str, Code] = {
         cause="it is a joint of quasi-static paths and of modes",
         remedy="run its quasi-static path: 'statejump reduced'",
     ),
+    "bounds_of_clearance": Code(
+        what="{joint_with_clearance} has clearance",
+        cause="not yet: bounds of joints with clearance (class C)",
+        remedy="simulate the histories that matter: 'statejump truss answers'",
+    ),
+    "bounds_of_stop": Code(
+        what="{part} may {change} at the reference temperature",
+        cause="not yet: bounds across stops, plays and slack cables (class B)",
+        remedy="simulate the histories that matter: 'statejump truss answers'",
+    ),
+    "bounds_of_mechanism": Code(
+        what="without friction, nothing holds {mode}",
+        cause="friction alone bounds no motion",
+        remedy="give this motion a stiffness, for example a spring",
+    ),
+    "bounds_of_unstable": Code(
+        what="the truss is unstable without friction",
+        cause="its rest states are not those near one equilibrium",
+        remedy="reduce compression, or stiffen the direction in which it gives way",
+    ),
+    "bounds_without_friction": Code(
+        what="no joint has friction", cause="every history returns to the same state", remedy="no bound is needed",
+    ),
+    "bounds_bad_output": Code(cause="must be node:NAME or node:NAME.x, .y, .z with a free direction"),
+    "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",
+                                  remedy="give node:NAME"),
+    "bounds_bad_range": Code(cause="must be LOWEST:HIGHEST with LOWEST <= 0 <= HIGHEST [K], for example -80:60"),
     "no_moving_mass": Code(
         what="nothing that moves has a mass", remedy="give links, beams or nodes a density or a mass",
     ),

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from statejump.core.later import Later
 from statejump.core.plausibility import clearances, moduli, strains
 from statejump.kinds.truss import checks
 from statejump.kinds.truss.elements.beam import BEAM, eccentric
@@ -15,6 +17,8 @@ from statejump.kinds.truss.resolve import resolve
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.sections import TrussSections
 from statejump.schema.fields import definition
+
+_BOUNDS = Later("statejump.kinds.truss.bounds.study:bounds")
 
 
 @definition
@@ -29,6 +33,15 @@ class TrussCase(TrussSections):
         """Return the truss as arrays: indices instead of names, defaults filled in, axes of length 1. The result is
         cached, so do not write to it."""
         return self._resolved
+
+    def bounds(self, **settings: Any) -> Any:
+        """Return bounds of the state jump over any temperature history.
+
+        :param settings: those of :func:`statejump.kinds.truss.bounds.study.bounds`
+        :return: :class:`statejump.kinds.truss.bounds.study.Bounds`
+        :raises StatejumpError: the truss has no such bounds yet
+        """
+        return _BOUNDS(self, **settings)
 
     @property
     def implausible(self) -> tuple[str, ...]:

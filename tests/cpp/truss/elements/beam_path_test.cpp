@@ -163,6 +163,10 @@ TEST(BeamPath, NamesTheRotationsOfAMechanism) {
   Model model = warmed_beam();
   model.nodes[0].rotations = 3;
   model.nodes[2].freedoms = 0;
+  const Path held = solve(model);
+  ASSERT_EQ(held.notes.size(), 1u);
+  EXPECT_EQ(held.notes[0].kind, NoteKind::free_spin);
+  model.nodes[1].moment = Vector3d(1.0, 0.0, 0.0);  // drives the spin
   try {
     solve(model);
     FAIL();

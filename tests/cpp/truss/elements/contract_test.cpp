@@ -272,6 +272,7 @@ TYPED_TEST(ElementContract, ForcesTurnWithTheStructure) {
   Model turned = this->model;
   for (Node& node : turned.nodes) node.position = turn * node.position;
   for (TypeParam& one : std::get<TestFixture::type>(turned.lists())) {
+    if constexpr (std::is_same_v<TypeParam, SpinSpring>) one.axis = turn * one.axis;
     for (const Parameter<TypeParam>& parameter : TypeParam::parameters()) {
       if (const auto* direction = std::get_if<Vector3d TypeParam::*>(&parameter.member)) {
         one.*(*direction) = turn * one.*(*direction);
