@@ -170,10 +170,9 @@ def test_a_mean_shares_its_load_by_weights_and_levers(tmp_path: Path) -> None:
 
 ARM = "RBE2,9,4,123456,5\n"
 REFUSED = {
-    "apart": ("RBAR,9,1,2,123456\n", failure("deck_not_supported", card="RBAR", reason="separate_rigid_nodes")),
     "partly": ("RBAR,9,2,3,123\n", failure("deck_not_supported", card="RBAR", reason="partial_coupling")),
     "half dependent": ("RBAR,9,2,3,123,456,456\n", failure("deck_not_supported", card="RBAR", reason="partial_coupling")),
-    "partly dependent": ("RBAR,9,2,3,123456,,,1\n", failure("deck_not_supported", card="RBAR", reason="partial_coupling")),
+    "partly dependent": ("RBAR,9,1,2,123456,,,1\n", failure("deck_not_supported", card="RBAR", reason="partial_coupling")),
     "a component apart": ("RBE2,9,1,1,2\n", failure("deck_not_supported", card="RBE2", reason="partial_coupling")),
     "warm": ("RBE2,9,2,123456,3,1.-5\n", failure("deck_not_supported", card="RBE2.ALPHA", reason="rigid_body_expansion")),
     "warm bar": ("RBAR,9,2,3,123456,,,,1.-5\n", failure("deck_not_supported", card="RBAR.ALPHA", reason="no_truss")),

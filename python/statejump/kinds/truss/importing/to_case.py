@@ -123,6 +123,7 @@ def case_document(
     _springs(deck, made, units, dimension)
     _expansions(deck, made, members)
     made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
+    _bodies(deck, made, units)
     _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity))
     deck.settle()
     if check_ignored:
@@ -164,7 +165,8 @@ def _dimension(deck: Deck, used: set[str]) -> int:
     size = max((abs(value) for node in used for value in deck.nodes[node]), default=0.0)
     if any(bar.bending for bar in deck.bars):  # beams rotate out of the plane, where nothing holds them
         return 3
-    if (max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
+    moments = [*deck.moment.values(), *deck.weight_moment.values()]
+    if (deck.hinges or any(np.any(moment[:2]) for moment in moments) or max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
             or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
             or any(abs(way[2]) > FLAT for one in deck.equations for _, way, _ in one.terms)):
         return 3
@@ -198,6 +200,24 @@ def _constraint(name: str, equation: Equation) -> dict[str, Any]:
     terms = {term: value for term, value in sums.items() if abs(value) > ROUNDING * largest}
     return {"name": name, "nodes": [node_name(node) for node, _ in terms], "directions": [axis for _, axis in terms],
             "coefficients": list(terms.values())}
+
+
+def _bodies(deck: Deck, made: Document, units: Units) -> None:
+    """Add rigid arms, one body for each master and coupling, and hinges to the document."""
+    found: dict[tuple[str, str, bool], list[str]] = {}
+    for arm in deck.arms:
+        found.setdefault((arm.master, arm.directions, arm.rotations), []).append(node_name(arm.node))
+    dimension = made["truss"]["dimension"]
+    made["rigid"] = [
+        {"name": f"R{number}", "master": node_name(master), "nodes": nodes,
+         **({} if directions == "xyz" else {"directions": [axis for axis in directions if axis in "xyz"[:dimension]]}),
+         **({} if rotations else {"rotations": []})}
+        for number, ((master, directions, rotations), nodes) in enumerate(found.items(), start=1)]
+    made["hinge"] = [
+        {"name": hinge.name, "nodes": [node_name(end) for end in hinge.nodes],
+         "axis": [float(part) + 0.0 for part in hinge.axis],
+         **({"stiffness_N_m_per_rad": in_units(hinge.stiffness, units.force_N * units.length_m)}
+            if hinge.stiffness else {})} for hinge in deck.hinges]
 
 
 def _expansions(deck: Deck, made: Document, members: Sequence[Member]) -> None:
@@ -281,12 +301,12 @@ def _node(deck: Deck, name: str, dimension: int, units: Units, bent: bool) -> di
     load = [in_units(value, units.force_N) for value in deck.force.get(name, ())][:dimension]
     if any(load):
         made["force_N"] = load
-    if held := rotations(deck, name, bent):
+    if held := [axis for axis in rotations(deck, name, bent) if dimension == 3 or axis == "z"]:
         made["fixed_rotations"] = held
     moment = deck.moment.get(name, np.zeros(3)) * (units.force_N * units.length_m)
     moment = moment + deck.weight_moment.get(name, np.zeros(3)) * (units.mass * deck.mass_scale * units.length_m**2)
     if np.any(moment):
-        made["moment_N_m"] = [float(f"{value:.15g}") for value in moment]
+        made["moment_N_m"] = [float(f"{value:.15g}") for value in (moment if dimension == 3 else moment[2:])]
     if deck.mass.get(name):
         made["mass_kg"] = in_units(deck.mass[name], units.mass * deck.mass_scale)
     return made

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rigid bodies and hinges of decks with beams, with closed forms."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from failures import failure
+
+import statejump as sj
+from statejump.kinds.truss.importing import Options, case_document, read
+
+HEAD = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nBEGIN BULK\n"
+# Sections of E I = 700 N m2 about both axes. They are nearly rigid in tension.
+SECTION = "PBAR,1,1,1.,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\n"
+FORCE = 1e-2
+EI = 700.0
+
+
+def grids(*places: float) -> str:
+    """Return nodes on the x axis, with numbers from 1."""
+    return "".join(f"GRID,{number},,{place},0.,0.\n" for number, place in enumerate(places, start=1))
+
+
+def bars(*ends: tuple[int, int]) -> str:
+    """Return beams along x."""
+    return "".join(f"CBAR,{number},1,{first},{second},0.,1.,0.\n" for number, (first, second) in enumerate(ends, start=1))
+
+
+def document(folder: Path, text: str, **options: Any) -> dict[str, Any]:
+    """Return the document of a deck."""
+    (folder / "deck.bdf").write_text(f"{HEAD}{text}{SECTION}ENDDATA\n")
+    return case_document(read(folder / "deck.bdf", options=Options(**options)), "deck", temperature_change_K=0.0)
+
+
+def moved(made: dict[str, Any], node: str) -> np.ndarray:
+    """Return the displacement of a node times E I over the force."""
+    at = [item["name"] for item in made["node"]].index(node)
+    found = sj.load(made).reduced().history["displacement_m"].values[-1, at]
+    return np.asarray(found) * EI / FORCE
+
+
+def force(node: int, *direction: float) -> str:
+    """Return a force on a node."""
+    return f"FORCE,5,{node},,{FORCE},{','.join(map(str, direction))}\n"
+
+
+def test_a_rigid_body_carries_beams_at_two_positions(tmp_path: Path) -> None:
+    """A cantilever 0 to 2, a rigid arm 2 to 3, a beam 3 to 4: u = (4³ - 2³ + 1³)/3 F/(E I)."""
+    made = document(tmp_path, grids(0, 2, 3, 4) + bars((1, 2), (3, 4)) + "RBE2,9,2,123456,3\nSPC1,1,123456,1\n" +
+                    force(4, 0., 1., 0.))
+    assert made["rigid"] == [{"name": "R1", "master": "N2", "nodes": ["N3"]}]
+    assert moved(made, "N4")[1] == pytest.approx(57 / 3, rel=1e-5)
+
+
+def test_bodies_that_share_nodes_are_one_body(tmp_path: Path) -> None:
+    """The arms 2-3 and 3-5 make one body. Node 5 is beside the beams at y = 0.5, where it is supported."""
+    made = document(tmp_path, grids(0, 2, 3, 4) + "GRID,5,,3.,.5,0.\n" + bars((1, 2), (3, 4)) +
+                    "RBE2,9,2,123456,3\nRBAR,10,3,5,123456\nSPC1,1,123456,1\nSPC1,1,2,5\n" + force(4, 0., 1., 0.))
+    assert made["rigid"] == [{"name": "R1", "master": "N5", "nodes": ["N2", "N3"]}]
+    # Support force R on the arm, at x = 3: deflections there of F and R cancel.
+    flexibility, coupling = 26 / 3, 26 / 3 + 4.0  # cantilever of 2 with an arm of 1; its slope under R
+    support = coupling / flexibility
+    assert moved(made, "N4")[1] == pytest.approx(57 / 3 - support * coupling, rel=1e-4)
+
+
+@pytest.mark.parametrize("components, along_y, along_z", [
+    ("123", 4 / 3, 4 / 3),
+    ("12345", 4 / 3, 1 / 3),  # rotates freely about z: a force along y bends two cantilevers, along z a clamped beam
+    ("12346", 1 / 3, 4 / 3),
+    ("1234", 4 / 3, 4 / 3),
+])
+@pytest.mark.parametrize("card", ["RBE2,9,2,{0},3\n", "RBAR1,9,2,3,{0}\n", "RBAR,9,2,3,123456,,,{0}\n"])
+def test_free_rotations_at_one_position_are_hinges(components: str, along_y: float, along_z: float, card: str,
+                                                   tmp_path: Path) -> None:
+    """Two beams of 2 m, clamped at their far ends: u = F 2³/(2 · 3 E I) if hinged, F 4³/(192 E I) if not."""
+    text = grids(0, 2, 2, 4) + bars((1, 2), (3, 4)) + card.format(components) + "SPC1,1,123456,1\nSPC1,1,23456,4\n"
+    assert moved(document(tmp_path, text + force(2, 0., 1., 0.)), "N2")[1] == pytest.approx(along_y, rel=1e-5)
+    assert moved(document(tmp_path, text + force(3, 0., 0., 1.)), "N3")[2] == pytest.approx(along_z, rel=1e-5)
+
+
+@pytest.mark.parametrize("components", ["12345", "123"])
+def test_a_hinge_ends_a_rigid_arm(components: str, tmp_path: Path) -> None:
+    """A cantilever of 2 m with an arm of 1 m has 26/3 E I/F, the beam behind the hinge 8/3: they act in parallel."""
+    made = document(tmp_path, grids(0, 2, 3, 5) + bars((1, 2), (3, 4)) + f"RBE2,9,2,{components},3\n"
+                    "SPC1,1,123456,1\nSPC1,1,23456,4\n" + force(3, 0., 1., 0.))
+    assert moved(made, "N3")[1] == pytest.approx(1 / (3 / 26 + 3 / 8), rel=1e-5)
+
+
+def test_two_bodies_may_hold_one_node(tmp_path: Path) -> None:
+    """Arms of 1 m at two cantilevers of 1 m hold a node by its displacements: each has 7/3 E I/F."""
+    made = document(tmp_path, grids(0, 1, 2, 3, 4) + bars((1, 2), (4, 5)) + "RBE2,9,2,123,3\nRBE2,10,4,123,3\n"
+                    "SPC1,1,123456,1\nSPC1,1,23456,5\n" + force(3, 0., 1., 0.))
+    assert len(made["rigid"]) == 2 and len(made["constraint"]) == 3
+    assert moved(made, "N3")[1] == pytest.approx(7 / 6, rel=1e-5)
+
+
+def test_some_displacements_follow_an_arm(tmp_path: Path) -> None:
+    """Node 3 at the end of an arm of 1 m follows along y only. A rod of 1000 N/m along z carries its force along z."""
+    text = grids(0, 2, 3) + "GRID,4,,3.,0.,1.\n" + bars((1, 2)) + "CROD,2,2,3,4\nPROD,2,2,1.-6\nMAT1,2,1.+9,,.3\n" \
+        "RBE2,9,2,12,3\nSPC1,1,123456,1\nSPC1,1,123,4\n"
+    made = document(tmp_path, text + force(3, 0., 1., 0.))
+    assert made["rigid"] == [{"name": "R1", "master": "N2", "nodes": ["N3"], "directions": ["x", "y"], "rotations": []}]
+    assert moved(made, "N3")[1] == pytest.approx(26 / 3, rel=1e-4)
+    assert moved(document(tmp_path, text + force(3, 0., 0., 1.)), "N2")[2] == pytest.approx(0, abs=1e-6)
+
+
+def test_masses_and_moments_stay_on_the_body(tmp_path: Path) -> None:
+    """A mass on an arm keeps its position, for modes. A moment acts on the body wherever it is given."""
+    made = document(tmp_path, grids(0, 2, 3) + bars((1, 2)) + "RBE2,9,2,123456,3\nCONM2,8,3,,5.\nSPC1,1,123456,1\n"
+                    "MOMENT,5,3,,.01,0.,0.,1.\n")
+    assert next(node for node in made["node"] if node["name"] == "N3")["mass_kg"] == 5
+    assert moved(made, "N3")[1] == pytest.approx(2.0**2 / 2 + 2.0, rel=1e-5)  # M L²/2 + M L · arm
+
+
+@pytest.mark.parametrize("load", [force(5, 0., 1., 0.), f"MOMENT,5,2,,{3 * FORCE},0.,0.,1.\n"])
+def test_bars_at_two_positions_of_a_body_rotate_it(load: str, tmp_path: Path) -> None:
+    """A rigid lever from x = 0 to 3, held at 0, with a rod of 7e6 N/m at 1 and a force at 3: u = 3² F/k there."""
+    text = "".join(f"GRID,{at},,{x},{y},0.\n" for at, x, y in ((1, 0, 0), (2, 1, 0), (3, 3, 0), (4, 1, 1), (5, 3, 1)))
+    made = document(tmp_path, text + "CROD,1,2,2,4\nCROD,2,2,3,5\nPROD,2,1,1.-4\nRBE2,9,1,123456,2,3\n"
+                    "SPC1,1,123,1,4\nSPC1,1,13,5\n" + load)
+    assert made["truss"]["dimension"] == 2 and made["rigid"][0]["master"] == "N1"
+    assert moved(made, "N3")[1] == pytest.approx(9 * EI / 7e6, rel=1e-5)
+
+
+@pytest.mark.parametrize("cards, reason", [
+    ("RBE2,9,2,456,3\n", "partial_coupling"),
+    ("RBE2,9,2,1246,3\n", "partial_coupling"),  # some displacements and some rotations
+    ("CORD2R,7,,0.,0.,0.,0.,0.,1.,\n,1.,1.,0.\nGRID,6,,3.,0.,0.,7\nCBAR,7,1,6,4,0.,1.,0.\nRBE2,9,2,13,6\n",
+     "partial_coupling"),  # a direction that is no axis
+])
+def test_other_couplings_are_refused(cards: str, reason: str, tmp_path: Path) -> None:
+    with pytest.raises(sj.StatejumpError) as refused:
+        document(tmp_path, grids(0, 2, 3, 4) + bars((1, 2), (3, 4)) + cards + "SPC1,1,123456,1\n" + force(2, 0., 1., 0.))
+    assert refused.value == failure("deck_not_supported", card="RBE2", reason=reason)
