@@ -166,8 +166,9 @@ def _dimension(deck: Deck, used: set[str]) -> int:
     if any(bar.bending for bar in deck.bars):  # beams rotate out of the plane, where nothing holds them
         return 3
     moments = [*deck.moment.values(), *deck.weight_moment.values()]
-    if (deck.hinges or any(np.any(moment[:2]) for moment in moments) or max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
-            or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
+    if (deck.hinges or any(np.any(moment[:2]) for moment in moments)
+            or max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values())
+            or deck.gravity[2] or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
             or any(abs(way[2]) > FLAT for one in deck.equations for _, way, _ in one.terms)):
         return 3
     deck.leave("z of nodes", "all nodes are in one plane: the truss is planar", 0)
