@@ -112,6 +112,7 @@ def test_masses_and_moments_stay_on_the_body(tmp_path: Path) -> None:
     made = document(tmp_path, grids(0, 2, 3) + bars((1, 2)) + "RBE2,9,2,123456,3\nCONM2,8,3,,5.\nSPC1,1,123456,1\n"
                     "MOMENT,5,3,,.01,0.,0.,1.\n")
     assert next(node for node in made["node"] if node["name"] == "N3")["mass_kg"] == 5
+    assert "density_kg_per_m3" not in made["beam"][0]  # statics without gravity
     assert moved(made, "N3")[1] == pytest.approx(2.0**2 / 2 + 2.0, rel=1e-5)  # M L²/2 + M L · arm
 
 
@@ -135,3 +136,37 @@ def test_other_couplings_are_refused(cards: str, reason: str, tmp_path: Path) ->
     with pytest.raises(sj.StatejumpError) as refused:
         document(tmp_path, grids(0, 2, 3, 4) + bars((1, 2), (3, 4)) + cards + "SPC1,1,123456,1\n" + force(2, 0., 1., 0.))
     assert refused.value == failure("deck_not_supported", card="RBE2", reason=reason)
+
+
+FREE = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\n"
+
+
+def test_a_free_deck_of_modes_runs_as_modes(tmp_path: Path) -> None:
+    """Masses on arms at both ends of a beam without mass, held in a plane: M = 4 kg at each end oscillates along it with
+    ω² = 2 E A/(L M). The three motions in the plane are free, the arms have none of their own."""
+    masses = "GRID,3,,0.,0.,1.\nGRID,4,,0.,0.,-1.\nGRID,5,,1.,0.,1.\nGRID,6,,1.,0.,-1.\nRBE2,8,1,123456,3,4\n" \
+        "RBE2,9,2,123456,5,6\n" + "".join(f"CONM2,1{node},{node},,2.\n" for node in (3, 4, 5, 6))
+    (tmp_path / "deck.bdf").write_text(
+        f"{FREE}{grids(0, 1)}{bars((1, 2))}{masses}PBAR,1,1,1.-4,1.-8,1.-8,1.-8\nMAT1,1,7.+10,,.3\n"
+        "SPC1,1,246,1,2\nSUPORT,1,135\nENDDATA\n")
+    made = case_document(read(tmp_path / "deck.bdf"), "deck", temperature_change_K=0.0)
+    assert made["truss"]["free"] and made["beam"][0]["density_kg_per_m3"] < 1e-9
+    found = sj.modes(sj.load(made), 6).frequency_Hz
+    assert list(found[:3]) == [0.0] * 3 and found[3] > 1
+    wanted = np.sqrt(2 * 7e6 / 4) / (2 * np.pi)
+    assert np.abs(found / wanted - 1).min() < 1e-6
+
+
+@pytest.mark.parametrize("solution, supports, free", [("103", "", True), ("101", "", False), ("103", "SPC1,1,1,1\n", False)])
+def test_only_decks_of_modes_without_supports_are_free(solution: str, supports: str, free: bool, tmp_path: Path) -> None:
+    (tmp_path / "deck.bdf").write_text(f"{FREE.replace('103', solution)}{grids(0, 1)}{bars((1, 2))}{SECTION}{supports}ENDDATA\n")
+    assert ("free" in case_document(read(tmp_path / "deck.bdf"), "deck", temperature_change_K=0.0)["truss"]) == free
+
+
+@pytest.mark.parametrize("step, free", [("*FREQUENCY\n4\n", True), ("*STATIC\n", False), ("*STATIC\n*END STEP\n*STEP\n*FREQUENCY\n4\n", False)])
+def test_frequency_steps_of_calculix_may_be_free(step: str, free: bool, tmp_path: Path) -> None:
+    (tmp_path / "deck.inp").write_text(
+        "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n*ELEMENT, TYPE=B31, ELSET=B\n1, 1, 2\n*MATERIAL, NAME=M\n*ELASTIC\n2.E11, .3\n"
+        "*DENSITY\n7800.\n*BEAM SECTION, ELSET=B, MATERIAL=M, SECTION=RECT\n.02, .01\n0., 1., 0.\n"
+        f"*STEP\n{step}*END STEP\n")
+    assert ("free" in case_document(read(tmp_path / "deck.inp"), "deck", temperature_change_K=0.0)["truss"]) == free

@@ -208,6 +208,8 @@ class Deck:
     :param taken: count by used card and result
     :param left: first line and count by omitted card and reason
     :param named_units: whether the file states the units of its numbers
+    :param modal: whether its solution is modes or a response, in which a structure may be free
+    :param free: whether cards of the deck state that rigid motions are possible
     :param choices: one sentence for each choice that no option of the user made
     """
 
@@ -242,6 +244,8 @@ class Deck:
     refused: dict[tuple[str, str], tuple[int, str, str, int]] = field(default_factory=dict)
     waived: set[str] = field(default_factory=set)
     named_units: bool = False
+    modal: bool = False
+    free: bool = False
     choices: list[str] = field(default_factory=list)
 
     def equation_directions(self) -> dict[str, list[np.ndarray]]:

@@ -124,7 +124,8 @@ def case_document(
     _expansions(deck, made, members)
     made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
     _bodies(deck, made, units)
-    _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity))
+    _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity) or deck.modal)
+    _free(deck, made)
     deck.settle()
     if check_ignored:
         deck.check_waived()
@@ -137,6 +138,14 @@ def case_document(
         made["reflector"] = {"axis": [float(part) for part in reflector[1][:dimension]], "nodes": list(dict.fromkeys(
             name for pattern in reflector[0] for name in matching("--reflector", pattern.strip(), of_deck)))}
     return finished(made)
+
+
+def _free(deck: Deck, made: Document) -> None:
+    """Permit rigid motions of a deck of modes without supports."""
+    supported = any("fixed" in node or "guide_normal" in node for node in made["node"])
+    if deck.modal and (deck.free or not supported):
+        made["truss"]["free"] = True
+        deck.take("free structure", "truss.free: 'statejump modes' computes its natural frequencies")
 
 
 def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> None:
@@ -230,7 +239,7 @@ def _expansions(deck: Deck, made: Document, members: Sequence[Member]) -> None:
         if bar.bending:
             deck.refuse(bar.kind, "thermal_table", 0, "EXPANSION")
             continue
-        key = (bar.expansion_table, bar.expansion_zero, _free(deck, bar))
+        key = (bar.expansion_table, bar.expansion_zero, _stress_free(deck, bar))
         if key not in names:
             names[key] = f"X{len(names) + 1}"
             made["expansion"].append(item(names[key], *key))
@@ -255,7 +264,7 @@ def _leave_impossible(deck: Deck, members: Sequence[Member], *, heated: bool, we
             del link["density_kg_per_m3"]
 
 
-def _free(deck: Deck, bar: Bar) -> float:
+def _stress_free(deck: Deck, bar: Bar) -> float:
     """Return the stress-free temperature of a bar."""
     if bar.reference_temperature is not None:
         return bar.reference_temperature
@@ -283,10 +292,10 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
     for bar in deck.bars:
         change = bar.temperature_change
         if change is None and bar.temperature is not None:
-            change = bar.temperature - _free(deck, bar)
+            change = bar.temperature - _stress_free(deck, bar)
         if change is None and deck.temperature:
             ends = [deck.temperature.get(end, deck.initial.get(end, 0.0)) for end in bar.nodes]
-            change = sum(ends) / 2 - _free(deck, bar)
+            change = sum(ends) / 2 - _stress_free(deck, bar)
         if change is None:
             change = given
         if change is None:
@@ -355,12 +364,12 @@ def _member(deck: Deck, bar: Bar, letter: str, change: float, peak: float, units
         made["density_kg_per_m3"] = in_units(bar.density, units.mass / units.length_m**3 * deck.mass_scale)
     elif density is not None:
         made["density_kg_per_m3"] = density
-    elif any(deck.gravity) and bar.bending:
+    elif _weightless(deck) and bar.bending:
         made["density_kg_per_m3"] = WEIGHTLESS_KG_PER_M3
-        deck.leave(bar.kind, f"no density: {WEIGHTLESS_KG_PER_M3:g} kg/m3 is taken, for gravity acts", 0)
-    elif any(deck.gravity):
+        deck.leave(bar.kind, f"no density: {WEIGHTLESS_KG_PER_M3:g} kg/m3 is taken, because other parts have a mass", 0)
+    elif _weightless(deck):
         made["mass_kg"] = WEIGHTLESS_KG
-        deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, for gravity acts", 0)
+        deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, because other parts have one", 0)
     else:
         deck.leave(bar.kind, "no density: the DEM and --dynamic need one, see --density", 0)
     for key in ("thermal_expansion_per_K", "density_kg_per_m3"):
@@ -375,6 +384,11 @@ def _member(deck: Deck, bar: Bar, letter: str, change: float, peak: float, units
     if peak and change != peak:
         made["temperature_fraction"] = change / peak
     return made
+
+
+def _weightless(deck: Deck) -> bool:
+    """Return whether bars without density need a negligible mass: under gravity, and for modes of other masses."""
+    return any(deck.gravity) or deck.modal and bool(any(deck.mass.values()) or any(bar.density for bar in deck.bars))
 
 
 def in_units(value: float, unit: float) -> float:

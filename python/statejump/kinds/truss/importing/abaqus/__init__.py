@@ -50,7 +50,10 @@ def read(path: Path, options: Options | None = None) -> Deck:
     """Return the content of a deck. :raises StatejumpError: one sentence with file and line"""
     deck = Deck(path, options or Options())
     model = Model(deck)
-    taken = [block for block in blocks(deck, path) if _check(model, block)]
+    given_blocks = list(blocks(deck, path))
+    taken = [block for block in given_blocks if _check(model, block)]
+    names = {block.name for block in given_blocks}
+    deck.modal = "FREQUENCY" in names and not names & set(loads.STATIC)
     for block in taken:
         if block.name == "ELEMENT":
             mesh.check_type(model, block)

@@ -42,6 +42,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
     by_name: dict[str, list[Card]] = {}
     for card in cards:
         by_name.setdefault(card.name, []).append(card)
+    deck.modal = chosen.solves(control.FREE_SOLUTIONS)
     reader = Reader(deck, by_name)
     loads.select(reader, chosen)
     for card in cards:
@@ -49,6 +50,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
             deck.leave(card.name, "given motion of a dynamic solution", card.line)
         elif card.name in ("SUPORT", "SUPORT1") and chosen.solves(control.FREE_SOLUTIONS):
             deck.leave(card.name, "reference of rigid-body modes: it holds nothing in this solution", card.line)
+            deck.free = True
         else:
             _check(reader, card, chosen)
     deck.settle()
