@@ -51,7 +51,8 @@ def held(case: TrussCase) -> HeldTruss:
     carried = {node for body in case.rigid for node in body.nodes}
     names, nodes, rigid = list(truss.nodes.names), list(case.node), list(case.rigid)
     may = np.array([name not in carried for name in names])
-    if np.linalg.matrix_rank(rows[np.repeat(may, 3)], tol=LEAST) < count:  # it spins about the line of its nodes: hold a node beside it
+    if np.linalg.matrix_rank(rows[np.repeat(may, 3)], tol=LEAST) < count:
+        # It spins about the line of its nodes: hold a node beside it.
         arm = int(np.flatnonzero(turning & may)[0])
         spin = (free @ null_space(rows[np.repeat(may, 3)], rcond=LEAST)[:, 0])[3:]
         aside = np.cross(spin, np.eye(3)[np.argmin(np.abs(spin))])
@@ -70,7 +71,8 @@ def held(case: TrussCase) -> HeldTruss:
     made = attrs.evolve(case, node=nodes, rigid=rigid)
     rows = np.vstack((rows, np.zeros((3, count))))
     moves = rows.reshape(-1, 3, count).transpose(2, 0, 1)
-    turns = np.broadcast_to(free[3:].T[:, None] / rates.size, moves.shape) * (np.arange(len(nodes)) < len(nodes) - 1)[:, None]
+    turns = np.broadcast_to(free[3:].T[:, None] / rates.size, moves.shape).copy()
+    turns[:, -1] = 0.0  # the ground
     return HeldTruss(made, np.stack((moves, turns), axis=2))
 
 
