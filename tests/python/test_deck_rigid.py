@@ -170,3 +170,46 @@ def test_frequency_steps_of_calculix_may_be_free(step: str, free: bool, tmp_path
         "*DENSITY\n7800.\n*BEAM SECTION, ELSET=B, MATERIAL=M, SECTION=RECT\n.02, .01\n0., 1., 0.\n"
         f"*STEP\n{step}*END STEP\n")
     assert ("free" in case_document(read(tmp_path / "deck.inp"), "deck", temperature_change_K=0.0)["truss"]) == free
+
+
+@pytest.mark.parametrize("bush", [
+    "GRID,3,,2.,0.,0.\nCBUSH,9,7,2,3,,,,0\n", "GRID,3,,2.,0.,0.\nCBUSH,9,7,3,2\n",
+    "GRID,3,,2.5,0.,0.\nCBUSH,9,7,2,3,0.,1.,0.,,.0\n",  # the elastic centre is node 2, an arm leads to node 3
+    "GRID,3,,2.5,0.,0.\nCBUSH,9,7,3,2,0.,1.,0.,,1.\n",
+])
+@pytest.mark.parametrize("direction", [1, 2])
+def test_a_bush_has_six_stiffnesses(bush: str, direction: int, tmp_path: Path) -> None:
+    """A cantilever 0 to 2, a bush of K = E I/m³ and E I/2 per rad, and a beam to 3: u = 3³/3 + 1 + 2 times F/(E I).
+    With an arm of 0.5 m the beam behind the bush is shorter."""
+    arm = 0.5 if "2.5," in bush else 0.0
+    text = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,4,,3.,0.,0.\n" + bars((1, 2), (3, 4)) + bush + \
+        "PBUSH,7,K,700.,700.,700.,350.,350.,350.\nSPC1,1,123456,1\n"
+    made = document(tmp_path, text + force(4, 0., *(float(at == direction) for at in (1, 2))))
+    wanted = (27 - 1 + (1 - arm)**3) / 3 + 1 + 2
+    assert moved(made, "N4")[direction] == pytest.approx(wanted, rel=1e-4)
+
+
+@pytest.mark.parametrize("cards", [
+    "CBUSH,9,7,1,,,,,0\nPBUSH,7,K,,,,700.,700.,700.\n",
+    "CELAS2,7,700.,1,4\nCELAS2,8,700.,1,5\nCELAS2,9,700.,1,6\n",
+    "GRID,3,,0.,0.,0.\nSPC1,1,123456,3\n" + "".join(f"CELAS2,{at},700.,1,{at},3,{at}\n" for at in (4, 5, 6)),
+])
+@pytest.mark.parametrize("direction", [1, 2])
+def test_springs_of_rotations_at_a_support(cards: str, direction: int, tmp_path: Path) -> None:
+    """A beam on a pin with springs of E I per rad: u = L³/3 + L² times F/(E I)."""
+    made = document(tmp_path, grids(0, 2) + bars((1, 2)) + cards + "SPC1,1,123,1\n" +
+                    force(2, 0., *(float(at == direction) for at in (1, 2))))
+    assert moved(made, "N2")[direction] == pytest.approx(8 / 3 + 4, rel=1e-4)
+
+
+@pytest.mark.parametrize("cards, card, reason", [
+    ("CBUSH,9,7,2,,,,,0\nPBUSH,7,K,,,,,,700.\n", "CBUSH", "rotation_spring"),
+    ("CELAS2,9,1.,2,6\n", "CELAS2", "rotation_spring"),
+    ("GRID,3,,0.,1.,0.\nCELAS2,9,1.,1,6,3,6\n", "CELAS2", "rotation_spring"),
+    ("CBUSH,9,7,2,1,0.,1.,0.,,.5,0,.1,0.,0.\nPBUSH,7,K,7.,7.\n", "CBUSH", "bush_offset"),
+    ("CBUSH,9,7,2,1\nPBUSH,7,K,7.,7.\n", "CBUSH", "missing_coordinate_system"),
+])
+def test_other_springs_of_rotations_are_refused(cards: str, card: str, reason: str, tmp_path: Path) -> None:
+    with pytest.raises(sj.StatejumpError) as refused:
+        document(tmp_path, grids(0, 2) + bars((1, 2)) + cards + "SPC1,1,123456,1\n" + force(2, 0., 1., 0.))
+    assert refused.value == failure("deck_not_supported", card=card, reason=reason)

@@ -189,6 +189,10 @@ def join(deck: Deck, one: Mapping[str, str]) -> None:
         else:
             springs.append(spring)
     deck.springs[:] = springs
+    for arm in deck.arms:
+        arm.master, arm.node = one.get(arm.master, arm.master), one.get(arm.node, arm.node)
+    for hinge in deck.hinges:
+        hinge.nodes = (one.get(hinge.nodes[0], hinge.nodes[0]), one.get(hinge.nodes[1], hinge.nodes[1]))
     for gone, kept in one.items():
         deck.fix(kept, "".join(deck.fixed.pop(gone, ())))
         for direction in deck.held.pop(gone, ()):
