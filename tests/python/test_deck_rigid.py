@@ -213,3 +213,48 @@ def test_other_springs_of_rotations_are_refused(cards: str, card: str, reason: s
     with pytest.raises(sj.StatejumpError) as refused:
         document(tmp_path, grids(0, 2) + bars((1, 2)) + cards + "SPC1,1,123456,1\n" + force(2, 0., 1., 0.))
     assert refused.value == failure("deck_not_supported", card=card, reason=reason)
+
+
+def spinning(folder: Path, direction: tuple[float, float, float], cards: str) -> dict[str, Any]:
+    """Return a beam of 2 m in two parts, whose ends are held by displacements only, with a force along z in its
+    middle."""
+    places = "".join(f"GRID,{at},,{','.join(f'{part * (at - 1):.9f}' for part in direction)}\n" for at in (1, 2, 3))
+    return document(folder, places + "CBAR,1,1,1,2,.1,.2,.9\nCBAR,2,1,2,3,.1,.2,.9\nSPC1,1,123,1\nSPC1,1,23,3\n" + cards +
+                    force(2, 0., 0., 1.))
+
+
+@pytest.mark.parametrize("direction, held", [((1.0, 0.0, 0.0), "x"), ((0.6, 0.8, 0.0), "y"), ((0.48, 0.64, 0.6), "y")])
+def test_the_free_spin_of_a_beam_is_held(direction: tuple[float, float, float], held: str, tmp_path: Path) -> None:
+    """u = F L³/(48 E I) across the beam: the held rotation carries no moment. It is noted."""
+    made = spinning(tmp_path, direction, "")
+    assert [node["fixed_rotations"] for node in made["node"] if "fixed_rotations" in node] == [[held]]
+    across = 1 - direction[2]**2  # only this part of the force bends the beam; its end slides along x
+    assert moved(made, "N2")[2] == pytest.approx(across * 8 / 48, rel=2e-3)
+    deck = read(tmp_path / "deck.bdf")
+    assert len(deck.choices) == 1 and "node 1" in deck.choices[0]
+
+
+@pytest.mark.parametrize("cards", [
+    "SPC1,1,4,3\n",  # it is held already
+    "MOMENT,5,2,,1.-3,1.,0.,0.\n",  # a moment acts on it: the run refuses the mechanism
+    "GRID,4,,1.,1.,0.\nRBE2,9,2,123,4\nCONM2,8,4,,1.\n",  # an arm aside
+    "GRID,4,,1.,1.,0.\nCBAR,3,1,2,4,0.,0.,1.\n",  # a beam aside
+    "GRID,4,,1.,1.,0.\nCBAR,3,1,2,4,0.,0.,1.,,\n,,456\nSPC1,1,123,4\n",  # its far end is hinged
+])
+def test_a_spin_with_stiffness_or_load_is_not_held(cards: str, tmp_path: Path) -> None:
+    made = spinning(tmp_path, (1.0, 0.0, 0.0), cards)
+    assert not read(tmp_path / "deck.bdf").choices
+    if "MOMENT" in cards:
+        with pytest.raises(sj.StatejumpError) as refused:
+            sj.load(made).reduced()
+        assert refused.value == failure("held_mechanism")
+
+
+def test_the_free_spin_of_a_beam_of_calculix_is_held(tmp_path: Path) -> None:
+    (tmp_path / "deck.inp").write_text(
+        "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n*ELEMENT, TYPE=B31, ELSET=B\n1, 1, 2\n*MATERIAL, NAME=M\n*ELASTIC\n2.E11, .3\n"
+        "*BEAM SECTION, ELSET=B, MATERIAL=M, SECTION=RECT\n.02, .01\n0., 1., 0.\n*BOUNDARY\n1, 1, 3\n2, 2, 3\n"
+        "*STEP\n*STATIC\n*CLOAD\n2, 1, 1.\n*END STEP\n")
+    made = case_document(read(tmp_path / "deck.inp"), "deck", temperature_change_K=0.0)
+    assert made["node"][0]["fixed_rotations"] == ["x"]
+    assert sj.load(made).reduced().history["displacement_m"].values[-1, 1, 0] == pytest.approx(1 / (2e11 * 2e-4), rel=1e-6)
