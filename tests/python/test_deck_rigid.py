@@ -258,3 +258,12 @@ def test_the_free_spin_of_a_beam_of_calculix_is_held(tmp_path: Path) -> None:
     made = case_document(read(tmp_path / "deck.inp"), "deck", temperature_change_K=0.0)
     assert made["node"][0]["fixed_rotations"] == ["x"]
     assert sj.load(made).reduced().history["displacement_m"].values[-1, 1, 0] == pytest.approx(1 / (2e11 * 2e-4), rel=1e-6)
+
+
+def test_a_deck_without_temperatures_has_one_increment(tmp_path: Path) -> None:
+    """Nothing changes after the start. More increments only repeat the state and compare its rounding."""
+    made = document(tmp_path, grids(0, 2) + bars((1, 2)) + "SPC1,1,123456,1\n" + force(2, 0., 1., 0.))
+    assert made["reduced"] == {"increments_per_branch": 1}
+    assert moved(made, "N2")[1] == pytest.approx(8 / 3, rel=1e-5)
+    warm = case_document(read(tmp_path / "deck.bdf"), "deck", temperature_change_K=5.0)
+    assert "reduced" not in warm

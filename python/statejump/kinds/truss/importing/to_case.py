@@ -120,6 +120,8 @@ def case_document(
         "slider": [], "revolute": [], "spring": [], "expansion": [],
         "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)}, **more,
     }
+    if not peak and not more:  # nothing follows the start: each branch is one increment
+        made["reduced"] = {"increments_per_branch": 1}
     _springs(deck, made, units, dimension)
     _expansions(deck, made, members)
     made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
