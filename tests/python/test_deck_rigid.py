@@ -267,3 +267,84 @@ def test_a_deck_without_temperatures_has_one_increment(tmp_path: Path) -> None:
     assert moved(made, "N2")[1] == pytest.approx(8 / 3, rel=1e-5)
     warm = case_document(read(tmp_path / "deck.bdf"), "deck", temperature_change_K=5.0)
     assert "reduced" not in warm
+
+
+# Two beams of E I = 1041.67 N m2: a cantilever 0 to 2, and a beam 3 to 4.
+FRAME = """*NODE, NSET=NALL
+1, 0., 0., 0.
+2, 2., 0., 0.
+3, 3., 0., 0.
+4, 4., 0., 0.
+8, 2., 1., 0.
+9, 0., 9., 0.
+*ELEMENT, TYPE=B31, ELSET=B
+1, 1, 2
+2, 3, 4
+*NSET, NSET=FAR
+3
+*MATERIAL, NAME=M
+*ELASTIC
+2.E9, 0.
+*BEAM SECTION, ELSET=B, MATERIAL=M, SECTION=RECT
+.05, .05
+0., 1., 0.
+*BOUNDARY
+1, 1, 6
+"""
+STIFF = 2e9 * 0.05**4 / 12
+SHEAR = 2 * STIFF / (5 / 6 * 1e9 * 0.05**2)  # of 2 m: length over the stiffness in shear
+
+
+def abaqus(folder: Path, cards: str, loads: str) -> dict[str, Any]:
+    """Return the document of the frame."""
+    (folder / "deck.inp").write_text(f"{FRAME}{cards}*STEP\n*STATIC\n*CLOAD\n{loads}*END STEP\n")
+    return case_document(read(folder / "deck.inp"), "deck", temperature_change_K=0.0)
+
+
+@pytest.mark.parametrize("cards", [
+    "*KINEMATIC COUPLING, REF NODE=2\n3, 1, 6\n", "*KINEMATIC COUPLING, REF NODE=2\nFAR\n",
+    "*SURFACE, NAME=S, TYPE=NODE\nFAR\n*COUPLING, REF NODE=2, SURFACE=S, CONSTRAINT NAME=C\n*KINEMATIC\n",
+    "*SURFACE, NAME=S, TYPE=NODE\n3, 1.\n*COUPLING, REF NODE=2, SURFACE=S, CONSTRAINT NAME=C\n*KINEMATIC\n1, 3\n4, 6\n",
+    "*RIGID BODY, REF NODE=2, TIE NSET=FAR\n",
+])
+def test_couplings_of_abaqus_carry_beams(cards: str, tmp_path: Path) -> None:
+    """The same frame as of RBE2: u = (4³ - 2³ + 1³)/3 F/(E I)."""
+    made = abaqus(tmp_path, cards, "4, 2, .01\n")
+    assert moved(made, "N4")[1] * STIFF / EI == pytest.approx(57 / 3, rel=1e-4)
+
+
+@pytest.mark.parametrize("cards", ["*KINEMATIC COUPLING, REF NODE=2\n3, 1, 3\n", "*RIGID BODY, REF NODE=2, NSET=FAR\n",
+                                   "*RIGID BODY, REF NODE=2, PIN NSET=FAR\n"])
+def test_couplings_of_displacements_are_hinges(cards: str, tmp_path: Path) -> None:
+    """The far beam ends on a support: half of a force in its middle reaches the hinge at the end of the arm of 1 m."""
+    made = abaqus(tmp_path, cards + "*BOUNDARY\n4, 2, 4\n", "3, 2, .01\n")
+    assert made["rigid"][0]["rotations"] == []
+    assert moved(made, "N3")[1] * STIFF / EI == pytest.approx(26 / 3 + SHEAR, rel=1e-5)
+
+
+def test_the_node_of_rotations_passes_moments_and_supports(tmp_path: Path) -> None:
+    """A moment on the node of rotations bends the cantilever: u = M L²/2 at its end."""
+    body = "*RIGID BODY, REF NODE=8, ROT NODE=9, TIE NSET=T\n*NSET, NSET=T\n2, 3\n"
+    made = abaqus(tmp_path, body, "9, 3, .01\n")
+    assert moved(made, "N2")[1] * STIFF / EI == pytest.approx(2, rel=1e-4)
+    held = abaqus(tmp_path, body + "*BOUNDARY\n9, 3, 3\n", "2, 2, .01\n")
+    assert moved(held, "N2")[1] * STIFF / EI == pytest.approx(8 / 12 + SHEAR, rel=1e-5)  # guided: F L³/(12 E I)
+
+
+@pytest.mark.parametrize("cards, code, fields", [
+    ("*RIGID BODY, REF NODE=2, ELSET=B\n", "deck_not_supported", {"card": "*RIGID BODY, ELSET", "reason": "no_truss"}),
+    ("*RIGID BODY, REF NODE=2\n", "deck_incomplete", {"card": "*RIGID BODY"}),
+    ("*RIGID BODY, REF NODE=2, ROT NODE=2, NSET=FAR\n", "deck_not_supported",
+     {"card": "*RIGID BODY, ROT NODE", "reason": "same_node"}),
+    ("*KINEMATIC COUPLING, REF NODE=NALL\n3\n", "deck_bad_value", {"card": "*KINEMATIC COUPLING"}),
+    ("*KINEMATIC COUPLING, REF NODE=2\n3, 4, 9\n", "deck_bad_value", {}),
+    ("*KINEMATIC COUPLING, REF NODE=2\n3, 4, 6\n", "deck_not_supported",
+     {"card": "*KINEMATIC COUPLING", "reason": "partial_coupling"}),
+    ("*KINEMATIC\n1, 3\n", "deck_incomplete", {"card": "*KINEMATIC"}),
+    ("*SURFACE, NAME=S\nB, S1\n*COUPLING, REF NODE=2, SURFACE=S\n*KINEMATIC\n", "deck_not_supported",
+     {"card": "*COUPLING, SURFACE", "reason": "surface_of_elements"}),
+])
+def test_other_couplings_of_abaqus_are_refused(cards: str, code: str, fields: dict[str, str], tmp_path: Path) -> None:
+    with pytest.raises(sj.StatejumpError) as refused:
+        abaqus(tmp_path, cards, "4, 2, .01\n")
+    assert refused.value == failure(code, **fields)

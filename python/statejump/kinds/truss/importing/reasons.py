@@ -61,6 +61,7 @@ REASONS: dict[str, str] = {
     "spring_mass": "mass of a spring",
     "subcase_combination": "it combines the results of other subcases",
     "support_off_bar_ends": "a support beside the position at which bars end",
+    "surface_of_elements": "a coupling of a surface that is none of nodes",
     "temperature_dependent": "its numbers depend on temperature",
     "temperature_gradient_varies": "a temperature gradient that varies along the beam",
     "temperature_gradient": "temperatures that differ across a section",

@@ -2,9 +2,9 @@
 """Beams that spin freely about their own axis.
 
 A straight row of beams spins freely if only displacements of its nodes are held or shared. Neither stiffness nor load
-acts on this motion, yet a run refuses it as a mechanism. The import therefore holds one rotation of one node of the row.
-If the row is along no axis, it holds the rotation about the axis nearest to the row. The spin then makes this rotation 0
-without a moment, so displacements and forces are those of the free row.
+acts on this motion, yet a run refuses it as a mechanism. The import therefore holds one rotation of one node of the
+row. If the row is along no axis, it holds the rotation about the axis nearest to the row. The spin then makes this
+rotation 0 without a moment, so displacements and forces are those of the free row.
 """
 from __future__ import annotations
 

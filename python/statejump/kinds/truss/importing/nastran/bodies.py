@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from statejump.kinds.truss.importing.coupling import ALL, MOVES, couple
 from statejump.kinds.truss.importing.model import Equation, Follower, RigidBody
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.supports import SAME
-
-ALL, MOVES, TURNS = frozenset("123456"), frozenset("123"), frozenset("456")
 
 
 def rbar(reader: Reader, card: Card) -> None:
@@ -51,38 +50,15 @@ def rbe2(reader: Reader, card: Card) -> None:
 
 def _couple(reader: Reader, card: Card, master: str, others: list[str], components: frozenset[str]) -> None:
     """Add rigid bodies whose other nodes follow a master in some components, each in its displacement system."""
-    deck, moves, turns = reader.deck, components & MOVES, components & TURNS
     if not components <= ALL:
         raise reader.fail(card, "deck_bad_value",
                           problem=f"components {''.join(sorted(components))} are not of the digits 1 to 6")
-    if not moves and (turns and reader.bends()):
-        deck.refuse(card.name, "partial_coupling", card.line)
-    elif not moves:
-        deck.leave(card.name, "it couples rotations only", card.line)
-    elif moves == MOVES and (turns in (TURNS, frozenset()) or not reader.bends()):
-        free = () if turns == TURNS or not reader.bends() else tuple(np.eye(3))
-        deck.rigid.append(RigidBody(card.line, card.name, [master, *others], free=free))
-    else:
-        for other in others:
-            _couple_one(reader, card, master, other, moves, turns)
 
+    def axes(node: str) -> np.ndarray:
+        frame = reader.frames[reader.displacement_frame[node]]
+        return np.asarray(frame.directions(reader.deck.nodes[node]))
 
-def _couple_one(reader: Reader, card: Card, master: str, other: str, moves: frozenset[str],
-                turns: frozenset[str]) -> None:
-    """Add a rigid body of two nodes that couples some components. At one position, displacements become equations."""
-    deck = reader.deck
-    axes = reader.frames[reader.displacement_frame[other]].directions(deck.nodes[other])
-    held = [axes[int(one) - 1] for one in sorted(moves)]
-    if deck.nodes[other] == deck.nodes[master] and (not turns or not reader.bends()):
-        deck.equations += [Equation(card.line, card.name, [(other, axis, 1.0), (master, axis, -1.0)]) for axis in held]
-        return
-    along = [[at for at in range(3) if abs(axis[at]) > 1 - SAME] for axis in held]
-    if not reader.bends() or moves != MOVES and (not all(along) or turns not in (TURNS, frozenset())):
-        deck.refuse(card.name, "partial_coupling", card.line)
-        return
-    directions = "xyz" if moves == MOVES else "".join(sorted("xyz"[one[0]] for one in along))
-    deck.rigid.append(RigidBody(card.line, card.name, [master, other], directions,
-                                tuple(axes[int(one) - 4] for one in sorted(TURNS - turns))))
+    couple(reader.deck, card.line, card.name, master, others, components, axes, reader.bends())
 
 
 def rbe3(reader: Reader, card: Card) -> None:
