@@ -371,7 +371,7 @@ def test_sizes_of_nodes_make_a_taper(shape: str, factor: float, tmp_path: Path) 
 def test_a_deck_without_supports_is_imported_and_does_not_run(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
     (tmp_path / "deck.bdf").write_text(TRIANGLE.format(1) + MATTER)
     told = statejump("truss", "import", "deck.bdf", "-o", "deck.toml", "--temperature-change", "1")
-    document = made(tmp_path, TRIANGLE.format(1) + MATTER)
+    document = case_document(read(tmp_path / "deck.bdf"), "deck", temperature_change_K=1.0)
     _, hint = checked(document, sj.load)
     assert hint == failure("no_support") and hint.remedy is not None and "--fixed" in hint.remedy
     assert told.status == 0 and f"hint: {hint}" in " ".join(told.output.split())

@@ -138,7 +138,7 @@ def test_other_couplings_are_refused(cards: str, reason: str, tmp_path: Path) ->
     assert refused.value == failure("deck_not_supported", card="RBE2", reason=reason)
 
 
-FREE = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\n"
+FREE = "SOL 103\nCEND\nSPC = 1\nLOAD = 5\nBEGIN BULK\nFORCE,5,1,,0.,1.,0.,0.\n"
 
 
 def test_a_free_deck_of_modes_runs_as_modes(tmp_path: Path) -> None:
@@ -157,13 +157,16 @@ def test_a_free_deck_of_modes_runs_as_modes(tmp_path: Path) -> None:
     assert np.abs(found / wanted - 1).min() < 1e-6
 
 
-@pytest.mark.parametrize("solution, supports, free", [("103", "", True), ("101", "", False), ("103", "SPC1,1,1,1\n", False)])
-def test_only_decks_of_modes_without_supports_are_free(solution: str, supports: str, free: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize("solution, supports, free", [
+    ("103", "", True), ("103", "SPC1,1,1,1\n", False),
+    ("101", "", True),  # nothing acts on it either
+    ("101", "FORCE,5,2,,1.,1.,0.,0.\n", False), ("101", "MOMENT,5,2,,1.,1.,0.,0.\n", False)])
+def test_decks_without_supports_and_of_modes_or_without_loads_are_free(solution: str, supports: str, free: bool, tmp_path: Path) -> None:
     (tmp_path / "deck.bdf").write_text(f"{FREE.replace('103', solution)}{grids(0, 1)}{bars((1, 2))}{SECTION}{supports}ENDDATA\n")
     assert ("free" in case_document(read(tmp_path / "deck.bdf"), "deck", temperature_change_K=0.0)["truss"]) == free
 
 
-@pytest.mark.parametrize("step, free", [("*FREQUENCY\n4\n", True), ("*STATIC\n", False), ("*STATIC\n*END STEP\n*STEP\n*FREQUENCY\n4\n", False)])
+@pytest.mark.parametrize("step, free", [("*FREQUENCY\n4\n", True), ("*STATIC\n*CLOAD\n2, 1, 1.\n", False), ("*STATIC\n*CLOAD\n2, 1, 1.\n*END STEP\n*STEP\n*FREQUENCY\n4\n", False)])
 def test_frequency_steps_of_calculix_may_be_free(step: str, free: bool, tmp_path: Path) -> None:
     (tmp_path / "deck.inp").write_text(
         "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n*ELEMENT, TYPE=B31, ELSET=B\n1, 1, 2\n*MATERIAL, NAME=M\n*ELASTIC\n2.E11, .3\n"

@@ -101,6 +101,7 @@ def case_document(
     more = dict(sections or {})
     changes = [0.0] * len(deck.bars) if "thermal" in more else _changes(deck, temperature_change_K)
     peak = max(changes, key=abs, default=temperature_change_K or 0.0)
+    deck.modal = deck.modal or not (peak or more or fixed or _held_or_loaded(deck))
     if not peak and any(any(bar.bending.gradient) for bar in deck.bars if bar.bending):
         peak = 1.0  # fractions give the links 0 K
     if any(deck.gravity) and density_kg_per_m3 is None and not deck.mass and not any(bar.density for bar in deck.bars):
@@ -127,13 +128,13 @@ def case_document(
     made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
     _bodies(deck, made, units)
     _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity) or deck.modal)
-    _free(deck, made)
     deck.settle()
     if check_ignored:
         deck.check_waived()
     if "thermal" in more and (deck.temperature or any(bar.temperature_change is not None for bar in deck.bars)):
         deck.leave("temperatures", "those of the members' histories are taken", 0)
     _hold(made, fixed, dimension)
+    _free(deck, made)
     deck.choices += put_in(made, joints, dimension)
     if reflector is not None:
         of_deck = [node_name(node) for node in deck.nodes if node in used]
@@ -142,8 +143,16 @@ def case_document(
     return finished(made)
 
 
+def _held_or_loaded(deck: Deck) -> bool:
+    """Return whether a deck has supports or loads."""
+    loads = [*deck.force.values(), *deck.moment.values(), deck.gravity]
+    gradients = any(any(bar.bending.gradient) for bar in deck.bars if bar.bending)
+    return bool(any(deck.fixed.values()) or any(deck.held.values()) or any(np.any(load) for load in loads) or gradients
+                or any(spring.second is None for spring in deck.springs))
+
+
 def _free(deck: Deck, made: Document) -> None:
-    """Permit rigid motions of a deck of modes without supports."""
+    """Permit rigid motions of a deck of modes without supports, and of a deck with neither loads nor supports."""
     supported = any("fixed" in node or "guide_normal" in node for node in made["node"])
     if deck.modal and (deck.free or not supported):
         made["truss"]["free"] = True

@@ -251,7 +251,7 @@ def _six(reader: Reader, card: Card, stiffness: list[float]) -> bool:
         deck.refuse(card.name, "bush_offset", card.line)
         return True
     if card[7]:
-        axes = np.asarray(reader.frame(card, 7).directions(start))
+        axes = np.asarray(reader.frame(card, 7).directions(deck.nodes[first]))
     elif not length:
         axes = np.asarray(reader.frames["0"].axes)
     else:
