@@ -5,11 +5,10 @@
     PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
 
 The table has a row for each deck of Nastran, CalculiX or Abaqus: units, whether it was imported and run, cause of a
-failure, largest displacement [m]. A deck of modes, or with neither supports nor loads, runs as modes: its row has frequencies.
-If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of
-displacements between both programs, over the largest displacement. This comparison is linear: loads are multiplied by a
-small factor, and *STEP, NLGEOM is removed for CalculiX. Decks with beams are compared with a Poisson's ratio of 0,
-B31 as B32.
+failure, largest displacement [m]. A deck of modes, or with neither supports nor loads, runs as modes: its row has
+frequencies. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of displacements between
+both programs, over the largest displacement. This comparison is linear: loads are multiplied by a small factor, and
+*STEP, NLGEOM is removed for CalculiX. Decks with beams are compared with a Poisson's ratio of 0, and B31 as B32.
 ``--temperature-change`` sets ΔT for decks without temperatures. Every deck runs in a separate process. Exit status 1:
 an import or a run ended with neither a result nor a message.
 """

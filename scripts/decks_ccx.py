@@ -16,7 +16,8 @@ OUTPUT = re.compile(r"\*((NODE|EL|ELEMENT|CONTACT|SECTION|MODAL|ENERGY)\s*(PRINT
                     re.IGNORECASE)
 BEAMS = re.compile(r"TYPE\s*=\s*B\d", re.IGNORECASE)
 LINEAR = re.compile(r"TYPE\s*=\s*B31R?\b", re.IGNORECASE)
-GENERATED = re.compile(r"^\s*\*(NGEN|NFILL|NCOPY|ELGEN|ELCOPY|INCLUDE|PART|NODAL\s*THICKNESS|NORMAL)\b", re.IGNORECASE | re.MULTILINE)
+GENERATED = re.compile(r"^\s*\*(NGEN|NFILL|NCOPY|ELGEN|ELCOPY|INCLUDE|PART|NODAL\s*THICKNESS|NORMAL)\b",
+                       re.IGNORECASE | re.MULTILINE)
 SECONDS = 120
 ROUNDING = 1e-10  # of displacements in ccx where nodes only rotate, in the unit of the deck
 
@@ -75,7 +76,8 @@ def without_poisson(text: str) -> str:
 
 def quadratic(text: str) -> str:
     """Return the deck with B32 and B32R in place of B31 and B31R, whose strains are constant along the beam: bending of
-    one element is then exact. Decks that generate nodes or elements, or have data of nodes of beams, stay as they are."""
+    one element is then exact. Decks that generate nodes or elements, or have data of nodes of beams, stay as they
+    are."""
     if GENERATED.search(text):
         return text
     places: dict[int, list[float]] = {}

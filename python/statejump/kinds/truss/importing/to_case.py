@@ -145,7 +145,7 @@ def case_document(
 
 def _held_or_loaded(deck: Deck) -> bool:
     """Return whether a deck has supports or loads."""
-    loads = [*deck.force.values(), *deck.moment.values(), deck.gravity]
+    loads = [*map(np.array, deck.force.values()), *deck.moment.values(), np.array(deck.gravity)]
     gradients = any(any(bar.bending.gradient) for bar in deck.bars if bar.bending)
     return bool(any(deck.fixed.values()) or any(deck.held.values()) or any(np.any(load) for load in loads) or gradients
                 or any(spring.second is None for spring in deck.springs))
