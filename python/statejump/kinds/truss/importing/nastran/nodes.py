@@ -239,10 +239,11 @@ def _node_stiffness(reader: Reader) -> tuple[dict[str, np.ndarray], dict[str, np
 def _pass_to_masters(deck: Deck, stiffness: dict[str, np.ndarray], rotational: dict[str, np.ndarray],
                      tied: dict[str, list[np.ndarray]]) -> None:
     """Pass the stiffness of nodes on rigid arms to their masters, from the outermost arm inwards."""
-    waiting = list(deck.arms)
-    while waiting:
+    waiting, outer = list(deck.arms), list(deck.arms)
+    while outer:  # the case refuses a ring of arms
         masters = {arm.master for arm in waiting}
-        for arm in [one for one in waiting if one.node not in masters]:
+        outer = [arm for arm in waiting if arm.node not in masters]
+        for arm in outer:
             waiting.remove(arm)
             held = np.diag([float(axis in arm.directions) for axis in "xyz"])
             block = held @ stiffness.get(arm.node, np.zeros((3, 3))) @ held
