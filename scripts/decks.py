@@ -5,9 +5,10 @@
     PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
 
 The table has a row for each deck of Nastran, CalculiX or Abaqus: units, whether it was imported and run, cause of a
-failure, largest displacement [m]. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of
-displacements between both programs, over the largest displacement. This comparison is linear: loads are multiplied by a
-small factor, and *STEP, NLGEOM is removed for CalculiX. Decks with beams are compared with a Poisson's ratio of 0.
+failure, largest displacement [m]. A deck of modes, or with neither supports nor loads, runs as modes: its row has
+frequencies. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of displacements between
+both programs, over the largest displacement. This comparison is linear: loads are multiplied by a small factor, and
+*STEP, NLGEOM is removed for CalculiX. Decks with beams are compared with a Poisson's ratio of 0, and B31 as B32.
 ``--temperature-change`` sets ΔT for decks without temperatures. Every deck runs in a separate process. Exit status 1:
 an import or a run ended with neither a result nor a message.
 """
@@ -63,6 +64,7 @@ class Row:
 
 def one(path: Path, name: str, options: argparse.Namespace) -> Row:
     """Import and run a deck in this process."""
+    import statejump as sj
     from statejump.core.errors import StatejumpError
     from statejump.kinds.truss.importing import SYSTEMS, Options, case_document, read
     from statejump.kinds.truss.importing.reading import form_of
@@ -78,6 +80,11 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
         row.imported = True
         if without_support:
             row.cause = str(without_support)
+            return row
+        if deck.modal or case.truss.free:  # type: ignore[attr-defined]
+            frequencies = sj.modes(case, 8).frequency_Hz  # type: ignore[arg-type]
+            row.cause = "modes [Hz]: " + ", ".join(f"{one:.6g}" for one in frequencies)
+            row.ran = True
             return row
         row.largest_m = float(np.abs(_displacements(case.reduced())).max())  # type: ignore[attr-defined]
         row.ran = True

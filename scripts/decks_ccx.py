@@ -15,6 +15,9 @@ ROW = re.compile(r"\s*(\d+)\s+([-+.\dEe]+)\s+([-+.\dEe]+)\s+([-+.\dEe]+)\s*$")
 OUTPUT = re.compile(r"\*((NODE|EL|ELEMENT|CONTACT|SECTION|MODAL|ENERGY)\s*(PRINT|FILE|OUTPUT)|OUTPUT|RESTART)\b",
                     re.IGNORECASE)
 BEAMS = re.compile(r"TYPE\s*=\s*B\d", re.IGNORECASE)
+LINEAR = re.compile(r"TYPE\s*=\s*B31R?\b", re.IGNORECASE)
+GENERATED = re.compile(r"^\s*\*(NGEN|NFILL|NCOPY|ELGEN|ELCOPY|INCLUDE|PART|NODAL\s*THICKNESS|NORMAL)\b",
+                       re.IGNORECASE | re.MULTILINE)
 SECONDS = 120
 ROUNDING = 1e-10  # of displacements in ccx where nodes only rotate, in the unit of the deck
 
@@ -38,7 +41,7 @@ def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Map
         for beside in path.parent.iterdir():
             if beside.is_file() and beside.suffix.lower() in (".inc", ".msh", ".nam", ".dat", ".inp"):
                 shutil.copy(beside, folder)
-        text = without_poisson(text) if BEAMS.search(text) else text
+        text = quadratic(without_poisson(text)) if BEAMS.search(text) else text
         (Path(folder) / "given.inp").write_text(printing(text, step, [int(name) for name in names if name.isdecimal()]))
         try:
             subprocess.run(["ccx", "-i", "given"], cwd=folder, capture_output=True, timeout=SECONDS,
@@ -69,6 +72,37 @@ def without_poisson(text: str) -> str:
             line = ",".join([words[0], " 0.", *words[2:]])
         made.append(line)
     return "\n".join(made) + "\n"
+
+
+def quadratic(text: str) -> str:
+    """Return the deck with B32 and B32R in place of B31 and B31R, whose strains are constant along the beam: bending of
+    one element is then exact. Decks that generate nodes or elements, or have data of nodes of beams, stay as they
+    are."""
+    if GENERATED.search(text):
+        return text
+    places: dict[int, list[float]] = {}
+    made: list[str] = []
+    middles: list[int] = []
+    keyword, beams = "", False
+    for line in text.splitlines():
+        if line.lstrip().startswith("*"):
+            keyword = line.strip().upper()
+            beams = keyword.startswith("*ELEMENT") and bool(LINEAR.search(keyword))
+            line = LINEAR.sub(lambda found: found[0].upper().replace("B31", "B32"), line) if beams else line
+        elif re.match(r"\*NODE\s*(,|$)", keyword) and line.strip():
+            number, *position = line.split(",")[:4]
+            places[int(number)] = [float(part) if part.strip() else 0.0 for part in position]
+        elif beams and line.strip():
+            element, first, second = (int(part) for part in line.split(",")[:3])
+            middle = max(places) + 1
+            middles.append(middle)
+            places[middle] = [(a + b) / 2 for a, b in zip(places[first], places[second])]
+            line = f"{element}, {first}, {middle}, {second}"
+        made.append(line)
+    given = re.compile(r"\s*\*NODE\s*(,|$)", re.IGNORECASE)
+    at = next((number for number, line in enumerate(made) if given.match(line)), 0)
+    new = [f"{number}, {', '.join(map(repr, places[number]))}" for number in middles]
+    return "\n".join([*made[:at], *(["*NODE", *new] if new else []), *made[at:]]) + "\n"
 
 
 def printing(text: str, step: int, nodes: list[int]) -> str:

@@ -319,7 +319,6 @@ def test_rotations_without_stiffness_are_held_as_in_nastran(tmp_path: Path) -> N
     ("CBAR,1,1,1,2,0.,1.,0.\n,2\n", "CBAR.PA", "released_shear"),
     ("CBAR,1,1,1,2,0.,1.,0.,GOO\n,,,0.,.1,0.,0.,.1,0.\n", "CBAR.W1A-W3B", "offset_in_element"),
     ("CBAR,1,1,1,2,0.,1.,0.\nCELAS2,9,1.,2,6\n", "CELAS2", "rotation_spring"),
-    ("CBAR,1,1,1,2,0.,1.,0.\nGRID,3,,2.,0.,0.\nGRID,4,,4.,0.,0.\nCBAR,2,1,3,4,0.,1.,0.\nRBE2,9,2,123,3\n", "RBE2", "hinge"),
 ])
 def test_what_beams_do_not_have_is_named(cards: str, card: str, reason: str, tmp_path: Path) -> None:
     with pytest.raises(sj.StatejumpError) as refused:

@@ -606,6 +606,11 @@ CODES: dict[str, Code] = {
         cause="the quasi-static path has no drives",
         remedy="'statejump reduced --dynamic' runs the case",
     ),
+    "free_truss": Code(
+        what="truss.free permits rigid motions",
+        cause="the quasi-static path and the DEM need supports",
+        remedy="'statejump modes' computes its natural frequencies; with supports, remove the key",
+    ),
     "beams_not_supported": Code(
         what="{part} rotates its nodes",
         cause="{model} has no rotations of nodes",

@@ -77,7 +77,7 @@ def _supports(truss: ResolvedTruss) -> None:
         part_of = joined[part_of]
     held_parts = np.zeros(parts, dtype=bool)
     held_parts[part_of[held]] = True
-    if held.any() and held_parts.all():
+    if held.any() and held_parts.all() or truss.free and parts == 1:
         return
     _, firsts = np.unique(part_of, return_index=True)
     loose = tuple(names[at] for at in firsts[~held_parts])

@@ -97,6 +97,8 @@ def refuse_beams(truss: ResolvedTruss, what: str) -> None:
 
 def check_at_rest(truss: ResolvedTruss) -> None:
     """Raise StatejumpError for a truss without a quasi-static path."""
+    if truss.free:
+        raise StatejumpError(code="free_truss", case=truss.name)
     for name in truss.drives.names[:1]:
         raise StatejumpError(code="driven_truss", case=truss.name, drive=name)
     for joint in JOINTS:

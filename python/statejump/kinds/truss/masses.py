@@ -51,12 +51,14 @@ def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
 
 
 def require_masses(truss: ResolvedTruss) -> None:
-    """Check that every node that moves has a mass, a link, a spring or a constraint.
+    """Check that every node that moves has a mass, a link, a spring, a constraint, a rigid body or a hinge.
 
     :raises MissingKey: a node has none of them, so nothing determines its acceleration
     """
     has = truss.nodes.mass_kg > 0
-    for nodes in (truss.links.nodes, truss.springs.nodes, truss.elements["beam"].nodes, *truss.constraints.nodes):
+    bodies, hinges = truss.joints["rigid"], truss.joints["hinge"]
+    for nodes in (truss.links.nodes, truss.springs.nodes, truss.elements["beam"].nodes, *truss.constraints.nodes,
+                  bodies.master, bodies.node, hinges.nodes):
         has[nodes[nodes >= 0]] = True
     for index in np.flatnonzero(~has & ~blocked_directions(truss)[:, :truss.dimension].all(axis=1))[:1]:
         raise MissingKey("mass_kg", code="mass_of_moving_node_missing", section=f"mass_kg of node "

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import eigh, null_space
-from scipy.sparse import bmat, identity
+from scipy.sparse import bmat, csr_matrix, identity, vstack
 from scipy.sparse.linalg import LinearOperator, eigsh, lsqr, splu
 
 from statejump import _engine
@@ -19,6 +19,7 @@ from statejump.core.figures import save
 from statejump.core.tables import Shown, write_csv
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.draw_modes import draw_modes
+from statejump.kinds.truss.free_motion import held
 from statejump.kinds.truss.motion import inertia
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import engine_items
@@ -30,6 +31,8 @@ COUNT = Rule(WHOLE, allowed=Range(1, 1000))
 # factors regular; it is subtracted from the squares of the frequencies found, so that they do not depend on it.
 SHIFT = 1e-9
 COMPLIANCE = 1e-12
+TWIST = 1e-9  # displacement over rotation times size below which a mode is torsion only
+SUPPORT = 1e-6  # fraction of the largest coefficient of a constraint, for a rigid motion that it prevents
 DENSE = 300  # dofs up to which all modes are computed
 
 
@@ -38,7 +41,8 @@ class Modes:
     """Modes of a truss, in ascending frequency.
 
     :param frequency_Hz: (modes,)
-    :param displacement: displacements of nodes (modes, nodes, 3), the largest of a mode is 1
+    :param displacement: displacements of nodes (modes, nodes, 3), the largest of a mode is 1; about 0 in torsion, whose
+        largest rotation is 1
     :param rotation_per_m: rotation vectors [rad] of nodes per metre of the largest displacement (modes, nodes, 3)
     :param effective_mass_kg: mass (modes, 3) that a mode moves with the ground along x, y, z; sums to the moving mass
     :param mass_kg: moving mass along x, y, z
@@ -89,30 +93,65 @@ def modes(case: TrussCase, count: int = 6) -> Modes:
     """
     COUNT.check("count", count)
     truss = case.resolve()
-    try:
-        found = _engine.truss_linearised(**engine_items(truss), inertia=inertia(case),
-                                         start_friction=truss.start_friction)
-    except _engine.EngineFailure as failure:
-        raise EngineFailed(failure, case=truss.name, place=truss.name) from None
+    supported = held(case)
+    found = _linearised(supported.case)
     stiffness, mass = found["stiffness_N_per_m"].tocsc(), found["mass_kg"].tocsc()
     size, moving = stiffness.shape[0], int(np.count_nonzero(mass.diagonal()))
     if moving == 0:
         raise StatejumpError(code="no_moving_mass", case=truss.name)
     scale = stiffness.diagonal().sum() / mass.diagonal().sum()
-    squares, shapes = _lowest(found, min(count, moving), SHIFT * scale)
-    frequency = np.sqrt(np.maximum(squares, 0.0)) / (2 * pi)
-    nodes = len(truss.nodes.names)
+    nodes, all_nodes = len(truss.nodes.names), len(supported.case.node)
     of_nodes = found["of_nodes"].tocsr()
+    if len(supported.motions):
+        squares, shapes = _lowest_free(found, min(count, moving), SHIFT * scale, supported.motions)
+    else:
+        squares, shapes = _lowest(found, min(count, moving), SHIFT * scale)
+    frequency = np.sqrt(np.maximum(squares, 0.0)) / (2 * pi)
     moved = (of_nodes @ shapes).T.reshape(len(squares), -1, 3)
     displacement = moved[:, :nodes]
-    rotation = moved[:, nodes:] if moved.shape[1] > nodes else np.zeros_like(displacement)
+    rotation = moved[:, all_nodes:all_nodes + nodes] if moved.shape[1] > all_nodes else np.zeros_like(displacement)
     largest = np.abs(displacement).max(axis=(1, 2), keepdims=True)
+    turned = np.abs(rotation).max(axis=(1, 2), keepdims=True)  # of torsion about the line of all nodes
+    largest = np.where(largest > TWIST * turned * np.ptp(truss.nodes.position_m), largest, turned)
     effective, total = np.zeros((len(squares), 3)), np.zeros(3)
     for axis in range(3):
-        rigid = _rigid(of_nodes[: 3 * nodes], axis, size)
+        rigid = _rigid(of_nodes[: 3 * all_nodes], axis, size)
         effective[:, axis] = (shapes.T @ (mass @ rigid)) ** 2
         total[axis] = rigid @ (mass @ rigid)
     return Modes(truss, frequency, displacement / largest, rotation / largest, effective, total)
+
+
+def _linearised(case: TrussCase) -> dict[str, Any]:
+    """Return stiffness, masses and constraints about the start. :raises EngineFailed: there is no equilibrium"""
+    truss = case.resolve()
+    try:
+        return dict(_engine.truss_linearised(**engine_items(truss), inertia=inertia(case),
+                                             start_friction=truss.start_friction))
+    except _engine.EngineFailure as failure:
+        raise EngineFailed(failure, case=truss.name, place=truss.name) from None
+
+
+def _lowest_free(found: dict[str, Any], count: int, shift: float,
+                 motions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the same of a free truss without its added supports, which are the constraints that prevent its rigid
+    motions. These are its first modes; the momentum of the others in them is zero.
+
+    :param motions: of the nodes, see :class:`~statejump.kinds.truss.free_motion.HeldTruss`
+    """
+    of_nodes, mass = found["of_nodes"], found["mass_kg"]
+    fields = np.moveaxis(motions, 2, 1).reshape(len(motions), -1)[:, : of_nodes.shape[0]]
+    rigid = np.stack([lsqr(of_nodes, field, atol=1e-14, btol=1e-14)[0] for field in fields], axis=1)
+    own = found["constraints"].tocsr()
+    prevents = np.abs(own @ rigid).max(axis=1) > SUPPORT * np.abs(own).max(axis=1).toarray().ravel()
+    sizes, axes = eigh(rigid.T @ (mass @ rigid))
+    rigid = rigid @ (axes / np.sqrt(sizes))
+    constraints = vstack([own[~prevents], csr_matrix((mass @ rigid).T)])
+    left = min(count, mass.shape[0]) - len(motions)
+    zero = np.zeros(min(count, len(motions)))
+    if left <= 0:
+        return zero, rigid[:, :count]
+    squares, shapes = _lowest({**found, "constraints": constraints}, left, shift)
+    return np.append(zero, squares), np.hstack((rigid, shapes))
 
 
 def _lowest(found: Any, count: int, shift: float) -> tuple[np.ndarray, np.ndarray]:

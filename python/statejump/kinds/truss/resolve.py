@@ -66,6 +66,7 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         reflector=reflector,
         sticking=case.reduced_settings.sticking,
         start_friction=case.start.friction,
+        free=case.truss.free,
         types=JOINTS,
         element_types=ELEMENTS,
     )

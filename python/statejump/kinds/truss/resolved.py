@@ -130,6 +130,7 @@ class ResolvedTruss:
     reflector: ReflectorSurface | None
     sticking: str  # one of STICKING: model of sticking contacts
     start_friction: str  # stuck or frictionless
+    free: bool  # whether supports may be missing
     types: Sequence[JoinsNodes]  # joint types in the order of results
     element_types: Sequence[PullsNodes]  # likewise
 

@@ -38,6 +38,7 @@ class Truss(Section):
 
     dimension: int = whole(..., 2, 3, "2: x and y; 3: x, y and z")
     gravity_m_per_s2: list[float] | None = numbers(None, "m/s2", -1e6, 1e6, "on all masses; none")
+    free: bool = switch(False, "whether supports may be missing: natural frequencies only")
 
 
 @definition

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rigid bodies and equations between displacements.
 
-Nodes of a truss have no rotations. A rigid body is accepted if bars and springs end at only one position of it. Its
-nodes at this position become one node, which gets the forces and masses of the body's other nodes. An equation that
+A rigid body at which bars and springs end at only one position becomes one node, which gets the forces and masses of
+the body's other nodes. Other rigid bodies become rigid arms, see ``arms.py``. An equation that
 holds a node becomes a support. If equations make all displacements of two nodes at one position equal, they become one
 node. If an equation determines the motion of a node without bars, the loads of that node move to the other nodes. All
 other equations become constraints of the case.
 """
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from statejump.kinds.truss.importing.model import Deck, Equation, Moment, RigidBody
+from statejump.kinds.truss.importing.arms import LooseArms
+from statejump.kinds.truss.importing.model import Arm, Deck, Equation, Moment, RigidBody, carriers
 from statejump.kinds.truss.importing.supports import ALONG, SAME, basis_of, held_directions, is_held
 
 # Nodes nearer than this fraction of the truss size coincide, because decks have eight digits.
@@ -24,22 +25,16 @@ ONE_PLACE = 1e-9
 def settle_bodies(deck: Deck) -> None:
     """Process moments, rigid bodies and equations, after supports, loads, bars and springs are read."""
     turning = Turning(deck)
+    bodies = _Bodies(deck, turning)
     for moment in deck.moments:
         turning.take(moment)
     if not (deck.rigid or deck.followers or deck.equations):
         return
-    bodies = _Bodies(deck, turning)
     bodies.take()
     _take_followers(deck)
     _follow_joined(deck, bodies.one)
     _take_equations(deck, bodies.near)
     _hold_loose(deck)
-
-
-def carriers(deck: Deck) -> set[str]:
-    """Return the nodes at which bars or springs end."""
-    found = {end for bar in deck.bars for end in bar.nodes}
-    return found | {end for spring in deck.springs for end in (spring.first, spring.second) if end}
 
 
 def named_nodes(deck: Deck) -> set[str]:
@@ -48,52 +43,109 @@ def named_nodes(deck: Deck) -> set[str]:
 
 
 class _Bodies:
-    """Processes the rigid bodies of a deck. Rigid bodies that share nodes are merged."""
+    """Processes the rigid bodies of a deck. Complete rigid bodies that share nodes are merged. A body becomes one node
+    if bars end at one position of it only, else rigid arms."""
 
     def __init__(self, deck: Deck, turning: Turning) -> None:
         self.deck, self.turning = deck, turning
         self.places, self.bent = dict(deck.nodes), deck.bent()
         self.size = float(np.ptp(np.array(list(deck.nodes.values())), axis=0).max()) if deck.nodes else 0.0
         self.one: dict[str, str] = {}  # nodes that were merged into another one
+        # Where no beam bends, rotations of the nodes of a body do not act.
+        self.partial = [body for body in deck.rigid if self.bent and (body.pinned or body.directions != "xyz")]
+        self.bodies = self._united([body for body in deck.rigid if not any(body is one for one in self.partial)])
+        self.followers = {node for body in self.partial for node in body.nodes[1:]}
+        self.tied = self.followers | {body.nodes[0] for body in self.partial}
+        equations = [*deck.equations, *(one for follower in deck.followers for one in follower.equations)]
+        self.tied |= {node for one in equations for node, _, _ in one.terms}
+        self.ends = carriers(deck)
+        self.turned = [body for body in self.bodies if self._turns(body)]
+        for body in self.turned:
+            turning.bent |= set(body.nodes)
 
     def near(self, first: str, second: str) -> bool:
         """Whether two nodes are at one place."""
-        way = np.subtract(self.places[first], self.places[second])
+        start, end = (self.places.get(node) or self.deck.nodes[node] for node in (first, second))
+        way = np.subtract(end, start)
         return bool(np.linalg.norm(way) <= ONE_PLACE * self.size)
 
     def take(self) -> None:
         """Take all bodies."""
-        ends = carriers(self.deck)
-        for body in self._united():
-            self._take(body, ends)
+        for body in self.bodies:
+            if any(body is one for one in self.turned):
+                self._merge(body)
+            else:
+                self._take(body)
         join(self.deck, self.one)
+        self.ends = carriers(self.deck)
+        for body in self.turned:
+            self._make_arms(body)
+        arms = LooseArms(self.deck, self.near)
+        for body in self.partial:
+            body.nodes[:] = [self.one.get(node, node) for node in body.nodes]
+            arms.take(body)
 
-    def _united(self) -> list[RigidBody]:
+    def _united(self, bodies: Sequence[RigidBody]) -> list[RigidBody]:
         joined: dict[str, RigidBody] = {}
-        for body in self.deck.rigid:
+        for body in bodies:
             whole = RigidBody(body.line, body.card, [])
             for node in body.nodes:
                 whole.nodes += joined[node].nodes if node in joined else [node]
             whole.nodes = list(dict.fromkeys(whole.nodes))
-            whole.pinned = body.pinned or any(joined[node].pinned for node in body.nodes if node in joined)
             joined.update({node: whole for node in whole.nodes})
         return list({id(body): body for body in joined.values()}.values())
 
-    def _take(self, body: RigidBody, ends: set[str]) -> None:
+    def _turns(self, body: RigidBody) -> bool:
+        """Return whether the rotation of a body acts: something ends at several positions of it."""
+        rotates = bool(set(body.nodes) & (self.bent | self.tied))
+        acting = [node for node in body.nodes
+                  if node in self.ends or rotates and self.bent and (node in self.tied or _acts(self.deck, node))]
+        return any(not self.near(acting[0], node) for node in acting)
+
+    def _merge(self, body: RigidBody) -> None:
+        """Merge the nodes of a body that are at one position."""
+        deck, kept = self.deck, list[str]()
+        for node in sorted(body.nodes, key=self._rank):
+            same = next((one for one in kept if self.near(one, node)), None)
+            if same is None:
+                kept.append(node)
+            elif {node, same} <= self.ends and any(
+                    of.get(same) != of.get(node) for of in (deck.temperature, deck.initial)):
+                deck.refuse(body.card, "unequal_temperatures", body.line)
+            else:
+                self.one[node] = same
+        body.nodes[:] = kept
+
+    def _rank(self, node: str) -> int:
+        """Return the rank of a node as master of its body: partial bodies and supports constrain masters best."""
+        orders = (node in self.followers, len(held_directions(self.deck, node)) > 0, node in self.bent,
+                  node in self.ends, True)
+        return orders.index(True)
+
+    def _make_arms(self, body: RigidBody) -> None:
+        """Connect the nodes of a body by arms. Nodes on which only loads act pass these to the master."""
+        deck, master = self.deck, body.nodes[0]
+        clamped = _clamped(deck, master)
+        for node in body.nodes[1:]:
+            if clamped and all(is_held(deck, node, axis) for axis in np.eye(3)):
+                for axis in np.eye(3):
+                    deck.hold_rotation(node, axis)
+            elif node in self.ends or node in self.tied or _acts(deck, node):
+                deck.arms.append(Arm(body.card, master, node))
+            else:
+                self._move_by_lever(body, master, node)
+        deck.take(body.card, "rigid body")
+
+    def _take(self, body: RigidBody) -> None:
         deck = self.deck
-        borne = [node for node in body.nodes if node in ends]
+        borne = [node for node in body.nodes if node in self.ends or self.bent and node in self.tied]
         if not borne:
             deck.leave(body.card, "no bar ends at its nodes", body.line)
             return
         kept = borne[0]
         others = [node for node in body.nodes if node != kept]
         far = [node for node in others if not self.near(kept, node)]
-        if body.pinned and (len(self.bent & set(body.nodes)) > 1 or far and self.bent & set(body.nodes)):
-            deck.refuse(body.card, "hinge", body.line)
-        elif set(far) & ends:
-            deck.refuse(body.card, "separate_rigid_nodes", body.line)
-        elif any(len(held_directions(deck, node)) or self.bent & set(body.nodes) and deck.held_rotations.get(node)
-                 for node in far):
+        if any(len(held_directions(deck, node)) for node in far):
             deck.refuse(body.card, "support_off_bar_ends", body.line)
         elif any(of.get(kept) != of.get(node) for node in borne for of in (deck.temperature, deck.initial)):
             deck.refuse(body.card, "unequal_temperatures", body.line)
@@ -137,6 +189,10 @@ def join(deck: Deck, one: Mapping[str, str]) -> None:
         else:
             springs.append(spring)
     deck.springs[:] = springs
+    for arm in deck.arms:
+        arm.master, arm.node = one.get(arm.master, arm.master), one.get(arm.node, arm.node)
+    for hinge in deck.hinges:
+        hinge.nodes = (one.get(hinge.nodes[0], hinge.nodes[0]), one.get(hinge.nodes[1], hinge.nodes[1]))
     for gone, kept in one.items():
         deck.fix(kept, "".join(deck.fixed.pop(gone, ())))
         for direction in deck.held.pop(gone, ()):
@@ -157,6 +213,17 @@ def _move(deck: Deck, kept: str, gone: str) -> None:
         deck.load(kept, force, *deck.force_line.pop(gone, (0, "force")))
     if mass := deck.mass.pop(gone, None):
         deck.weigh(kept, mass, *deck.mass_line.pop(gone, (0, "mass")))
+
+
+def _acts(deck: Deck, node: str) -> bool:
+    """Return whether a node of a body has a mass or a support."""
+    return bool(deck.mass.get(node) or len(held_directions(deck, node)) or deck.held_rotations.get(node))
+
+
+def _clamped(deck: Deck, node: str) -> bool:
+    """Return whether supports hold all displacements and rotations of a node."""
+    held = np.array(deck.held_rotations.get(node, [])).reshape(-1, 3)
+    return all(is_held(deck, node, axis) for axis in np.eye(3)) and len(basis_of(held)) == 3
 
 
 def _take_followers(deck: Deck) -> None:
@@ -246,6 +313,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
         if pair := _equal(one):
             pairs.setdefault((min(pair), max(pair)), []).append(one)
     ends, bent, found = carriers(deck), deck.bent(), []
+    armed = {end for arm in deck.arms for end in (arm.master, arm.node)}
     joined: dict[str, str] = {}
     stays: set[str] = set()
     for pair, several in pairs.items():
@@ -253,7 +321,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
         # A node removed here must be in no other pair of this round, because remaining nodes are removed only later.
         # Ends of two beams keep their own rotations.
         if kept not in ends or {kept, gone} <= bent or not near(kept, gone) or joined.keys() & {kept, gone} or \
-                gone in stays or any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
+                gone in stays | armed or any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
             continue
         rows = [one.terms[0][1] for one in several]
         rows += [axis for axis in np.eye(3) if is_held(deck, kept, axis) and is_held(deck, gone, axis)]

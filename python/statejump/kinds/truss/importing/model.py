@@ -67,15 +67,50 @@ class Bar:
 
 @dataclass
 class RigidBody:
-    """Nodes that move as one rigid body.
+    """Nodes that move as one rigid body. The first node is the master.
 
-    :param pinned: whether rotations of some of its nodes are free
+    :param directions: displacements of its other nodes that follow the master
+    :param free: directions about which its other nodes rotate freely, unit vectors; three: about all
     """
 
     line: int
     card: str
     nodes: list[str]
-    pinned: bool = False
+    directions: str = "xyz"
+    free: tuple[np.ndarray, ...] = ()
+
+    @property
+    def pinned(self) -> bool:
+        """Whether rotations of some of its nodes are free."""
+        return bool(self.free)
+
+
+@dataclass
+class Arm:
+    """A rigid arm from a master to a node. Together they become a ``[[rigid]]`` of the case.
+
+    :param directions: displacements of the node that follow the master
+    :param rotations: whether the rotations of the node follow too
+    """
+
+    card: str
+    master: str
+    node: str
+    directions: str = "xyz"
+    rotations: bool = True
+
+
+@dataclass
+class Hinge:
+    """A hinge between two nodes at one position, which becomes a ``[[hinge]]`` of the case.
+
+    :param stiffness: moment over the angle, in the units of the deck
+    """
+
+    name: str
+    nodes: tuple[str, str]
+    axis: np.ndarray
+    stiffness: float = 0.0
 
 
 @dataclass
@@ -173,6 +208,8 @@ class Deck:
     :param taken: count by used card and result
     :param left: first line and count by omitted card and reason
     :param named_units: whether the file states the units of its numbers
+    :param modal: whether its solution is modes or a response, in which a structure may be free
+    :param free: whether cards of the deck state that rigid motions are possible
     :param choices: one sentence for each choice that no option of the user made
     """
 
@@ -191,6 +228,8 @@ class Deck:
     springs: list[Spring] = field(default_factory=list)
     moments: list[Moment] = field(default_factory=list)
     rigid: list[RigidBody] = field(default_factory=list)
+    arms: list[Arm] = field(default_factory=list)
+    hinges: list[Hinge] = field(default_factory=list)
     equations: list[Equation] = field(default_factory=list)
     followers: list[Follower] = field(default_factory=list)
     mass: dict[str, float] = field(default_factory=dict)
@@ -205,6 +244,8 @@ class Deck:
     refused: dict[tuple[str, str], tuple[int, str, str, int]] = field(default_factory=dict)
     waived: set[str] = field(default_factory=set)
     named_units: bool = False
+    modal: bool = False
+    free: bool = False
     choices: list[str] = field(default_factory=list)
 
     def equation_directions(self) -> dict[str, list[np.ndarray]]:
@@ -278,6 +319,11 @@ class Deck:
         if count > MOST_ITEMS:
             raise self.fail(line, "deck_too_many_items", most=MOST_ITEMS)
 
+    def new_name(self, name: str) -> str:
+        """Return a name for a further node at the position of a node."""
+        number = next(number for number in range(1, MOST_ITEMS) if f"{name}_{number}" not in self.nodes)
+        return f"{name}_{number}"
+
     def add_node(self, line: int, name: str, position: tuple[float, float, float]) -> None:
         """Add a node. :raises Unreadable: another node has its name"""
         if name in self.nodes:
@@ -308,9 +354,11 @@ class Deck:
         of[name] = of.get(name, np.zeros(3)) + moment
 
     def bent(self) -> set[str]:
-        """Return the nodes at which beams end that bend."""
-        return {end for bar in self.bars if bar.bending
-                for end, turned in zip(bar.nodes, bar.bending.turned_ends) if turned}
+        """Return the nodes that rotate: beams end there that bend, or they belong to rigid arms or hinges."""
+        found = {end for bar in self.bars if bar.bending
+                 for end, turned in zip(bar.nodes, bar.bending.turned_ends) if turned}
+        found |= {arm.master for arm in self.arms} | {arm.node for arm in self.arms if arm.rotations}
+        return found | {end for hinge in self.hinges for end in hinge.nodes}
 
     def ends_of(self, bar: Bar) -> tuple[np.ndarray, np.ndarray]:
         """Return the positions of both ends of a bar or beam; those of a beam may be beside its nodes."""
@@ -345,6 +393,14 @@ class Deck:
         """Return the table rows for omitted cards, in the order of the deck."""
         return [(card, str(count), str(line) if line else "", why)
                 for (card, why), (line, count) in sorted(self.left.items(), key=lambda item: item[1])]
+
+
+def carriers(deck: Deck) -> set[str]:
+    """Return the nodes at which bars, springs, rigid arms or hinges end."""
+    found = {end for bar in deck.bars for end in bar.nodes}
+    found |= {end for item in deck.hinges for end in item.nodes} | {end for arm in deck.arms
+                                                                    for end in (arm.master, arm.node)}
+    return found | {end for spring in deck.springs for end in (spring.first, spring.second) if end}
 
 
 def _argument(waiver: str) -> str:

@@ -32,6 +32,8 @@ def summary(made: Mapping[str, Any]) -> Shown:
         ("links", str(len(made.get("link", ())))),
         *((("beams", str(len(made["beam"]))),) if made.get("beam") else ()),
         ("springs", str(len(made.get("spring", ())))),
+        *((("rigid bodies", str(len(made["rigid"]))),) if made.get("rigid") else ()),
+        *((("hinges", str(len(made["hinge"]))),) if made.get("hinge") else ()),
         *((("constraints", str(len(made["constraint"]))),) if made.get("constraint") else ()),
         ("supported nodes", str(sum("fixed" in node or "guide_normal" in node for node in made["node"]
                                     if node["name"] in positions))),

@@ -101,6 +101,7 @@ def case_document(
     more = dict(sections or {})
     changes = [0.0] * len(deck.bars) if "thermal" in more else _changes(deck, temperature_change_K)
     peak = max(changes, key=abs, default=temperature_change_K or 0.0)
+    deck.modal = deck.modal or not (peak or more or fixed or _held_or_loaded(deck))
     if not peak and any(any(bar.bending.gradient) for bar in deck.bars if bar.bending):
         peak = 1.0  # fractions give the links 0 K
     if any(deck.gravity) and density_kg_per_m3 is None and not deck.mass and not any(bar.density for bar in deck.bars):
@@ -120,22 +121,42 @@ def case_document(
         "slider": [], "revolute": [], "spring": [], "expansion": [],
         "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)}, **more,
     }
+    if not peak and not more:  # nothing follows the start: each branch is one increment
+        made["reduced"] = {"increments_per_branch": 1}
     _springs(deck, made, units, dimension)
     _expansions(deck, made, members)
     made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
-    _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity))
+    _bodies(deck, made, units)
+    _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity) or deck.modal)
     deck.settle()
     if check_ignored:
         deck.check_waived()
     if "thermal" in more and (deck.temperature or any(bar.temperature_change is not None for bar in deck.bars)):
         deck.leave("temperatures", "those of the members' histories are taken", 0)
     _hold(made, fixed, dimension)
+    _free(deck, made)
     deck.choices += put_in(made, joints, dimension)
     if reflector is not None:
         of_deck = [node_name(node) for node in deck.nodes if node in used]
         made["reflector"] = {"axis": [float(part) for part in reflector[1][:dimension]], "nodes": list(dict.fromkeys(
             name for pattern in reflector[0] for name in matching("--reflector", pattern.strip(), of_deck)))}
     return finished(made)
+
+
+def _held_or_loaded(deck: Deck) -> bool:
+    """Return whether a deck has supports or loads."""
+    loads = [*map(np.array, deck.force.values()), *deck.moment.values(), np.array(deck.gravity)]
+    gradients = any(any(bar.bending.gradient) for bar in deck.bars if bar.bending)
+    return bool(any(deck.fixed.values()) or any(deck.held.values()) or any(np.any(load) for load in loads) or gradients
+                or any(spring.second is None for spring in deck.springs))
+
+
+def _free(deck: Deck, made: Document) -> None:
+    """Permit rigid motions of a deck of modes without supports, and of a deck with neither loads nor supports."""
+    supported = any("fixed" in node or "guide_normal" in node for node in made["node"])
+    if deck.modal and (deck.free or not supported):
+        made["truss"]["free"] = True
+        deck.take("free structure", "truss.free: 'statejump modes' computes its natural frequencies")
 
 
 def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> None:
@@ -164,8 +185,10 @@ def _dimension(deck: Deck, used: set[str]) -> int:
     size = max((abs(value) for node in used for value in deck.nodes[node]), default=0.0)
     if any(bar.bending for bar in deck.bars):  # beams rotate out of the plane, where nothing holds them
         return 3
-    if (max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
-            or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
+    moments = [*deck.moment.values(), *deck.weight_moment.values()]
+    if (deck.hinges or any(np.any(moment[:2]) for moment in moments)
+            or max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values())
+            or deck.gravity[2] or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
             or any(abs(way[2]) > FLAT for one in deck.equations for _, way, _ in one.terms)):
         return 3
     deck.leave("z of nodes", "all nodes are in one plane: the truss is planar", 0)
@@ -200,6 +223,24 @@ def _constraint(name: str, equation: Equation) -> dict[str, Any]:
             "coefficients": list(terms.values())}
 
 
+def _bodies(deck: Deck, made: Document, units: Units) -> None:
+    """Add rigid arms, one body for each master and coupling, and hinges to the document."""
+    found: dict[tuple[str, str, bool], list[str]] = {}
+    for arm in deck.arms:
+        found.setdefault((arm.master, arm.directions, arm.rotations), []).append(node_name(arm.node))
+    dimension = made["truss"]["dimension"]
+    made["rigid"] = [
+        {"name": f"R{number}", "master": node_name(master), "nodes": nodes,
+         **({} if directions == "xyz" else {"directions": [axis for axis in directions if axis in "xyz"[:dimension]]}),
+         **({} if rotations else {"rotations": []})}
+        for number, ((master, directions, rotations), nodes) in enumerate(found.items(), start=1)]
+    made["hinge"] = [
+        {"name": hinge.name, "nodes": [node_name(end) for end in hinge.nodes],
+         "axis": [float(part) + 0.0 for part in hinge.axis],
+         **({"stiffness_N_m_per_rad": in_units(hinge.stiffness, units.force_N * units.length_m)}
+            if hinge.stiffness else {})} for hinge in deck.hinges]
+
+
 def _expansions(deck: Deck, made: Document, members: Sequence[Member]) -> None:
     """Give links temperature-dependent coefficients: one [[expansion]] per table and stress-free temperature."""
     names: dict[tuple[tuple[tuple[float, float], ...], float, float], str] = {}
@@ -209,7 +250,7 @@ def _expansions(deck: Deck, made: Document, members: Sequence[Member]) -> None:
         if bar.bending:
             deck.refuse(bar.kind, "thermal_table", 0, "EXPANSION")
             continue
-        key = (bar.expansion_table, bar.expansion_zero, _free(deck, bar))
+        key = (bar.expansion_table, bar.expansion_zero, _stress_free(deck, bar))
         if key not in names:
             names[key] = f"X{len(names) + 1}"
             made["expansion"].append(item(names[key], *key))
@@ -234,7 +275,7 @@ def _leave_impossible(deck: Deck, members: Sequence[Member], *, heated: bool, we
             del link["density_kg_per_m3"]
 
 
-def _free(deck: Deck, bar: Bar) -> float:
+def _stress_free(deck: Deck, bar: Bar) -> float:
     """Return the stress-free temperature of a bar."""
     if bar.reference_temperature is not None:
         return bar.reference_temperature
@@ -262,10 +303,10 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
     for bar in deck.bars:
         change = bar.temperature_change
         if change is None and bar.temperature is not None:
-            change = bar.temperature - _free(deck, bar)
+            change = bar.temperature - _stress_free(deck, bar)
         if change is None and deck.temperature:
             ends = [deck.temperature.get(end, deck.initial.get(end, 0.0)) for end in bar.nodes]
-            change = sum(ends) / 2 - _free(deck, bar)
+            change = sum(ends) / 2 - _stress_free(deck, bar)
         if change is None:
             change = given
         if change is None:
@@ -281,12 +322,12 @@ def _node(deck: Deck, name: str, dimension: int, units: Units, bent: bool) -> di
     load = [in_units(value, units.force_N) for value in deck.force.get(name, ())][:dimension]
     if any(load):
         made["force_N"] = load
-    if held := rotations(deck, name, bent):
+    if held := [axis for axis in rotations(deck, name, bent) if dimension == 3 or axis == "z"]:
         made["fixed_rotations"] = held
     moment = deck.moment.get(name, np.zeros(3)) * (units.force_N * units.length_m)
     moment = moment + deck.weight_moment.get(name, np.zeros(3)) * (units.mass * deck.mass_scale * units.length_m**2)
     if np.any(moment):
-        made["moment_N_m"] = [float(f"{value:.15g}") for value in moment]
+        made["moment_N_m"] = [float(f"{value:.15g}") for value in (moment if dimension == 3 else moment[2:])]
     if deck.mass.get(name):
         made["mass_kg"] = in_units(deck.mass[name], units.mass * deck.mass_scale)
     return made
@@ -334,12 +375,12 @@ def _member(deck: Deck, bar: Bar, letter: str, change: float, peak: float, units
         made["density_kg_per_m3"] = in_units(bar.density, units.mass / units.length_m**3 * deck.mass_scale)
     elif density is not None:
         made["density_kg_per_m3"] = density
-    elif any(deck.gravity) and bar.bending:
+    elif _weightless(deck) and bar.bending:
         made["density_kg_per_m3"] = WEIGHTLESS_KG_PER_M3
-        deck.leave(bar.kind, f"no density: {WEIGHTLESS_KG_PER_M3:g} kg/m3 is taken, for gravity acts", 0)
-    elif any(deck.gravity):
+        deck.leave(bar.kind, f"no density: {WEIGHTLESS_KG_PER_M3:g} kg/m3 is taken, because other parts have a mass", 0)
+    elif _weightless(deck):
         made["mass_kg"] = WEIGHTLESS_KG
-        deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, for gravity acts", 0)
+        deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, because other parts have one", 0)
     else:
         deck.leave(bar.kind, "no density: the DEM and --dynamic need one, see --density", 0)
     for key in ("thermal_expansion_per_K", "density_kg_per_m3"):
@@ -354,6 +395,11 @@ def _member(deck: Deck, bar: Bar, letter: str, change: float, peak: float, units
     if peak and change != peak:
         made["temperature_fraction"] = change / peak
     return made
+
+
+def _weightless(deck: Deck) -> bool:
+    """Return whether bars without density need a negligible mass: under gravity, and for modes of other masses."""
+    return any(deck.gravity) or deck.modal and bool(any(deck.mass.values()) or any(bar.density for bar in deck.bars))
 
 
 def in_units(value: float, unit: float) -> float:

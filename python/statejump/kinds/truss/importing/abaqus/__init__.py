@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from statejump.kinds.truss.importing import profiles
-from statejump.kinds.truss.importing.abaqus import assembly, generation, loads, mesh, sections
+from statejump.kinds.truss.importing.abaqus import assembly, bodies, generation, loads, mesh, sections
 from statejump.kinds.truss.importing.abaqus.keywords import Block, blocks
 from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, KEYWORDS
@@ -18,6 +18,7 @@ from statejump.kinds.truss.importing.bending import Section as BeamSection
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card, Field
 from statejump.kinds.truss.importing.model import Bar, Deck, Options
+from statejump.kinds.truss.importing.spins import hold_spins
 
 # Order in which keywords are read, because a deck may have them in any order. Keywords of one stage are read in the
 # deck's order.
@@ -34,8 +35,11 @@ STAGES: tuple[dict[str, Reading], ...] = (
      "TRANSVERSE SHEAR STIFFNESS": sections.shear_stiffness,
      "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
     # Read after the steps, because the result depends on supports.
-    {"SPRING": sections.spring, "EQUATION": loads.equation},
+    {"SPRING": sections.spring, "EQUATION": loads.equation, "SURFACE": bodies.surface},
+    {"RIGID BODY": bodies.rigid_body, "KINEMATIC COUPLING": bodies.kinematic_coupling, "COUPLING": bodies.coupling,
+     "KINEMATIC": bodies.kinematic},
 )
+SUPPORTED = 7  # the first stage behind the steps
 # Keywords that are read with the steps, or that delimit parts.
 TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",
             "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE", "PARAMETER")
@@ -50,7 +54,10 @@ def read(path: Path, options: Options | None = None) -> Deck:
     """Return the content of a deck. :raises StatejumpError: one sentence with file and line"""
     deck = Deck(path, options or Options())
     model = Model(deck)
-    taken = [block for block in blocks(deck, path) if _check(model, block)]
+    given_blocks = list(blocks(deck, path))
+    taken = [block for block in given_blocks if _check(model, block)]
+    names = {block.name for block in given_blocks}
+    deck.modal = "FREQUENCY" in names and not names & set(loads.STATIC)
     for block in taken:
         if block.name == "ELEMENT":
             mesh.check_type(model, block)
@@ -60,8 +67,8 @@ def read(path: Path, options: Options | None = None) -> Deck:
     deck.spread_weight = True
     given = assembly.flat(model, taken)
     steps, own = _steps(given)
-    for stage in STAGES:
-        if stage is STAGES[-1]:
+    for number, stage in enumerate(STAGES):
+        if number == SUPPORTED:
             loads.run(model, steps)
         for block, scope in own:
             later = block.name == "NSET" and "ELSET" in block.parameters
@@ -71,6 +78,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
                 stage[block.name](model, block, scope)
     _bars(model)
     settle_bodies(deck)
+    hold_spins(deck)
     split_tapered(deck)
     deck.settle()
     return deck
@@ -140,6 +148,7 @@ def _bars(model: Model) -> None:
     shared = Counter(end for one in model.elements.values() for end in set(one.nodes))
     shared.update(term[0] for one in model.deck.equations for term in one.terms)
     shared.update(moment.node for moment in model.deck.moments)
+    shared.update(node for body in model.deck.rigid for node in body.nodes)
     for one in model.elements.values():
         if one.family not in (BAR, BEAM):
             continue

@@ -12,7 +12,8 @@ SOLVE = "how a program solves"
 DYNAMIC = "acts in dynamics, buckling or modes only; the import takes structure, static loads and temperatures"
 HEAT = "heat transfer: temperatures are those of *TEMPERATURE"
 CONTACT = "contact"
-TIES = "couplings of nodes, surfaces or rotations: only *EQUATION is supported"
+TIES = "couplings of surfaces, distributing couplings, and equations of other kinds"
+BODY = "rigid body or equations, as RBE2 of Nastran"
 USER = "a routine of the user"
 # In this table "_" stands for a blank in a name, because blanks separate names.
 KEYWORDS: dict[str, Card] = table(
@@ -95,8 +96,22 @@ KEYWORDS: dict[str, Card] = table(
          "CONTINUE ALLSDTOL FACTOR RIKS", idle={"DIRECT SOLVER STABILIZE TIME_RESET TOTAL_TIME_AT_START EXPLICIT "
                                                 "CONTINUE ALLSDTOL FACTOR RIKS": SOLVE}),
     used("END_STEP", "end of a step"),
+    used("RIGID_BODY", f"{BODY}; NSET and PIN_NSET by displacements, TIE_NSET also by rotations",
+         "NSET REF_NODE ROT_NODE PIN_NSET TIE_NSET ELSET POSITION ANALYTICAL_SURFACE ISOTHERMAL",
+         idle={"ISOTHERMAL": HEAT}, refused={"ELSET ANALYTICAL_SURFACE": "a body of elements or surfaces",
+                                             "POSITION": "a node that moves to the centre of the body"}),
+    used("KINEMATIC_COUPLING", BODY, "REF_NODE ORIENTATION", refused={"ORIENTATION": "directions of its own"}),
+    used("SURFACE", "TYPE=NODE: nodes of *COUPLING", "NAME TYPE COMBINE CROP FILL_ENDS INTERNAL MAX_RATIO NO_OFFSET "
+         "NO_THICK DEFINITION SCALE_THICK REGION_TYPE OFFSET TRIM PROPERTY",
+         idle={"COMBINE CROP FILL_ENDS INTERNAL MAX_RATIO NO_OFFSET NO_THICK DEFINITION SCALE_THICK REGION_TYPE OFFSET "
+               "TRIM PROPERTY": "of surfaces of elements"}),
+    used("COUPLING", BODY, "REF_NODE SURFACE CONSTRAINT_NAME ORIENTATION INFLUENCE_RADIUS ALPHA",
+         idle={"CONSTRAINT_NAME": "a name"},
+         refused={"ORIENTATION": "directions of its own", "INFLUENCE_RADIUS": "a part of its surface",
+                  "ALPHA": "thermal expansion of a rigid body"}),
+    used("KINEMATIC", "components of *COUPLING"),
     # Not supported.
-    refused("MPC TIE KINEMATIC COUPLING RIGID_BODY DISTRIBUTING DISTRIBUTING_COUPLING KINEMATIC_COUPLING "
+    refused("MPC TIE DISTRIBUTING DISTRIBUTING_COUPLING "
             "EMBEDDED_ELEMENT MULTI_POINT_CONSTRAINTS NETWORK_MPC SHELL_TO_SOLID_COUPLING", TIES),
     refused("SURFACE_INTERACTION SURFACE_BEHAVIOR CONTACT_PAIR CONTACT FRICTION CLEARANCE GAP CONTACT_DAMPING "
             "CONTACT_CONTROLS CHANGE_CONTACT_TYPE MODEL_CHANGE", CONTACT),
@@ -117,9 +132,9 @@ KEYWORDS: dict[str, Card] = table(
          "ENERGY_FILE MODAL_OUTPUT MODAL_FILE MODAL_PRINT SECTION_PRINT SECTION_FILE FACE_PRINT MONITOR FILE_FORMAT "
          "PRINT DIAGNOSTICS INTEGRATED_OUTPUT INTEGRATED_OUTPUT_SECTION TIME_POINTS TIMEPOINTS RADIATION_FILE COMMENT "
          "END", OUTPUT),
-    idle("CONTROLS SOLVER_CONTROLS SECTION_CONTROLS SURFACE FILTER PHYSICAL_CONSTANTS VALUES_AT_INFINITY "
+    idle("CONTROLS SOLVER_CONTROLS SECTION_CONTROLS FILTER PHYSICAL_CONSTANTS VALUES_AT_INFINITY "
          "ANALYSIS DYNAMIC_CONTROLS DASHPOT DAMPING ROTARY_INERTIA BEAM_ADDED_INERTIA",
-         "inertia of rotations, damping, surfaces that nothing uses, or how a program solves"),
+         "inertia of rotations, damping, or how a program solves"),
     idle("DYNAMIC FREQUENCY BUCKLE MODAL_DYNAMIC STEADY_STATE_DYNAMICS COMPLEX_FREQUENCY MODAL_DAMPING GLOBAL_DAMPING "
          "SELECT_CYCLIC_SYMMETRY_MODES SELECT_EIGENMODES RANDOM_RESPONSE RESPONSE_SPECTRUM GREEN GEOSTATIC "
          "SENSITIVITY DESIGN_VARIABLES OBJECTIVE CONSTRAINT COUPLED_TEMPERATURE-DISPLACEMENT "

@@ -14,6 +14,7 @@ from statejump.kinds.truss.importing.nastran import bodies, control, elements, l
 from statejump.kinds.truss.importing.nastran.cards import Card, number_of, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
+from statejump.kinds.truss.importing.spins import hold_spins
 
 # In the order of reading: each reader needs the results of those before it.
 READERS: dict[str, Callable[[Reader, Card], None]] = {
@@ -42,6 +43,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
     by_name: dict[str, list[Card]] = {}
     for card in cards:
         by_name.setdefault(card.name, []).append(card)
+    deck.modal = chosen.solves(control.FREE_SOLUTIONS)
     reader = Reader(deck, by_name)
     loads.select(reader, chosen)
     for card in cards:
@@ -49,6 +51,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
             deck.leave(card.name, "given motion of a dynamic solution", card.line)
         elif card.name in ("SUPORT", "SUPORT1") and chosen.solves(control.FREE_SOLUTIONS):
             deck.leave(card.name, "reference of rigid-body modes: it holds nothing in this solution", card.line)
+            deck.free = True
         else:
             _check(reader, card, chosen)
     deck.settle()
@@ -65,6 +68,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
     settle_bodies(deck)
     if chosen.autospc:
         nodes.hold_singular(reader)
+    hold_spins(deck)
     split_tapered(deck)
     if chosen.solution.startswith("106"):  # in this solution TREF belongs to the coefficient of expansion only
         for bar in deck.bars:

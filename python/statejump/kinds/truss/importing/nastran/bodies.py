@@ -6,65 +6,59 @@ from dataclasses import replace
 
 import numpy as np
 
+from statejump.kinds.truss.importing.coupling import ALL, MOVES, couple
 from statejump.kinds.truss.importing.model import Equation, Follower, RigidBody
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.supports import SAME
 
-ALL, MOVES = frozenset("123456"), frozenset("123")
-
 
 def rbar(reader: Reader, card: Card) -> None:
-    """Read a rigid bar between two nodes (RBAR, RBAR1). It must couple all translations."""
+    """Read a rigid bar between two nodes (RBAR, RBAR1)."""
     first, second = (reader.node(card, place) for place in (1, 2))
     if card.name == "RBAR1":
-        coupled_ones = set(card[3] or "123456")
-        pinned = coupled_ones != ALL
-        if not MOVES <= coupled_ones:
-            reader.deck.refuse(card.name, "partial_coupling", card.line)
+        _couple(reader, card, first, [second], frozenset(card[3] or "123456"))
+        return
+    free = [frozenset(card[place]) for place in (3, 4)]
+    coupled = [frozenset(card[place]) for place in (5, 6)]
+    if not any(free):
+        free[0] = ALL
+    if not any(coupled):
+        coupled = [ALL - one for one in free]
+    # Accepted: all components of one end are independent, or the dependent components are those that are not free.
+    if free in ([ALL, frozenset()], [frozenset(), ALL]) and not coupled[free.index(ALL)]:
+        at = free.index(ALL)
+        if MOVES <= coupled[1 - at] and not reader.bends():
+            reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second]))
             return
+        _couple(reader, card, (first, second)[at], [(second, first)[at]], coupled[1 - at])
+    elif len(free[0]) + len(free[1]) == 6 and coupled == [ALL - one for one in free]:
+        reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second]))
     else:
-        free = [frozenset(card[place]) for place in (3, 4)]
-        coupled = [frozenset(card[place]) for place in (5, 6)]
-        if not any(free):
-            free[0] = ALL
-        if not any(coupled):
-            coupled = [ALL - one for one in free]
-        # Accepted: one end with all components and the other end following in translation (a hinge), or all components
-        # that are not free follow.
-        hinge = free in ([ALL, frozenset()], [frozenset(), ALL]) and MOVES <= coupled[free.index(frozenset())] and \
-            not coupled[free.index(ALL)]
-        if not hinge and (len(free[0]) + len(free[1]) != 6 or coupled != [ALL - one for one in free]):
-            reader.deck.refuse(card.name, "partial_coupling", card.line)
-            return
-        pinned = hinge and coupled[free.index(frozenset())] != ALL
-    reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second], pinned))
+        reader.deck.refuse(card.name, "partial_coupling", card.line)
 
 
 def rbe2(reader: Reader, card: Card) -> None:
-    """Read a rigid body (RBE2). If it couples only some components, at one position, it becomes equations."""
-    first, components = reader.node(card, 1), set(card[2])
+    """Read a rigid body (RBE2)."""
+    first, components = reader.node(card, 1), frozenset(card[2])
     texts = [text for text in card.fields[3:] if text]
     if texts and not texts[-1].isdecimal():  # its coefficient of thermal expansion
         if reader.number(Card(card.line, card.name, [texts.pop()]), 0) != 0:
             reader.deck.refuse("RBE2.ALPHA", "rigid_body_expansion", card.line)
-    others = reader.several(card, texts)
+    _couple(reader, card, first, reader.several(card, texts), components)
+
+
+def _couple(reader: Reader, card: Card, master: str, others: list[str], components: frozenset[str]) -> None:
+    """Add rigid bodies whose other nodes follow a master in some components, each in its displacement system."""
     if not components <= ALL:
-        raise reader.fail(card, "deck_bad_value", problem=f"components {card[2]} are not of the digits 1 to 6")
-    if not components & MOVES and reader.bends():
-        reader.deck.refuse(card.name, "partial_coupling", card.line)
-    elif not components & MOVES:
-        reader.deck.leave(card.name, "it couples rotations only", card.line)
-    elif MOVES <= components:
-        reader.deck.rigid.append(RigidBody(card.line, card.name, [first, *others], components != ALL))
-    elif any(reader.deck.nodes[other] != reader.deck.nodes[first] for other in others):
-        reader.deck.refuse(card.name, "partial_coupling", card.line)
-    else:
-        for other in others:
-            axes = reader.frames[reader.displacement_frame[other]].directions(reader.deck.nodes[other])
-            reader.deck.equations += [
-                Equation(card.line, card.name, [(other, axes[int(one) - 1], 1.0), (first, axes[int(one) - 1], -1.0)])
-                for one in sorted(components & MOVES)]
+        raise reader.fail(card, "deck_bad_value",
+                          problem=f"components {''.join(sorted(components))} are not of the digits 1 to 6")
+
+    def axes(node: str) -> np.ndarray:
+        frame = reader.frames[reader.displacement_frame[node]]
+        return np.asarray(frame.directions(reader.deck.nodes[node]))
+
+    couple(reader.deck, card.line, card.name, master, others, components, axes, reader.bends())
 
 
 def rbe3(reader: Reader, card: Card) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from statejump.kinds.truss.importing.bending import Bending, Section, across, triad
+from statejump.kinds.truss.importing.bushes import Bush, add_bush
 from statejump.kinds.truss.importing.model import Bar, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Ends, Material, Property, Reader
@@ -76,7 +77,7 @@ def _ends(reader: Reader, card: Card, ends: tuple[str, str]) -> Ends:
 def _axis_y(reader: Reader, card: Card, first: str) -> np.ndarray:
     """Return the direction of axis y of a beam's section; zero if the deck does not give it."""
     given, kind = card.fields[4:7], card[7]
-    default = (reader.cards.get({"CBAR": "BAROR", "CBEAM": "BEAMOR"}[card.name]) or [Card(0, "")])[0]
+    default = (reader.cards.get({"CBAR": "BAROR", "CBEAM": "BEAMOR"}.get(card.name, "")) or [Card(0, "")])[0]
     if not any(given):
         given, kind = default.fields[4:7], kind or default[7]
     if not any(given):
@@ -169,7 +170,7 @@ def celas(reader: Reader, card: Card) -> None:
     components = [card[place + 1] or "0" for place in (2, 4) if card[place] and card[place] != "0"]
     if components and set(components) <= set("456"):
         if reader.bends() and stiffness:
-            reader.deck.refuse(card.name, "rotation_spring", card.line)
+            _rotational(reader, card, name, stiffness)
             return
         reader.deck.leave(card.name, "a spring of rotations: ends of bars turn freely", card.line)
         return
@@ -185,6 +186,23 @@ def celas(reader: Reader, card: Card) -> None:
     add_spring(reader.deck, card.line, card.name, name, stiffness, ends)
 
 
+def _rotational(reader: Reader, card: Card, name: str, stiffness: float) -> None:
+    """Read a spring between one rotation of two nodes at one position, or of a node and the ground."""
+    ends = [(reader.node(card, place), int(card[place + 1]) - 4) for place in (2, 4) if card[place] and
+            card[place] != "0"]
+    first = ends[0][0]
+    second = ends[1][0] if len(ends) > 1 else None
+    frames = [reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node]) for node, _ in ends]
+    axis = frames[0][ends[0][1]]
+    if second is not None and (first == second or reader.deck.nodes[first] != reader.deck.nodes[second] or
+                               np.linalg.norm(axis - frames[1][ends[1][1]]) > SAME):
+        reader.deck.refuse(card.name, "rotation_spring", card.line)
+        return
+    turns = tuple(stiffness if at == ends[0][1] else 0.0 for at in range(3))
+    add_bush(reader.deck, Bush(card.line, card.name, name, first, second, np.array(reader.deck.nodes[first]),
+                               np.asarray(frames[0]), (0.0, 0.0, 0.0), turns))
+
+
 def cbush(reader: Reader, card: Card) -> None:
     """Read a spring (CBUSH): in up to three directions to the ground, or in its first direction along its own line."""
     name = element(reader, card)
@@ -193,9 +211,9 @@ def cbush(reader: Reader, card: Card) -> None:
     if not found:
         raise reader.fail(card, "deck_undefined", what_it_is="PBUSH", name=number)
     stiffness = _bush(reader, found[0])
-    if any(stiffness[3:]) and reader.bends():
-        reader.deck.refuse("PBUSH.K4-K6", "rotation_spring", found[0].line)
-    elif any(stiffness[3:]):
+    if reader.bends() and _six(reader, card, stiffness):
+        return
+    if any(stiffness[3:]):
         reader.deck.leave("PBUSH", "K4 to K6, stiffness of rotations: ends of bars turn freely", found[0].line)
     first = reader.node(card, 2)
     second = reader.node(card, 3) if card[3] and card[3] != "0" else None
@@ -217,6 +235,37 @@ def cbush(reader: Reader, card: Card) -> None:
             return
         ends = [(node, axes[place]) for node in (first, second) if node is not None]
         add_spring(reader.deck, card.line, card.name, name if place == 0 else f"{name}_{place + 1}", value, ends)
+
+
+def _six(reader: Reader, card: Card, stiffness: list[float]) -> bool:
+    """Read a CBUSH with springs of rotations, or with springs that are not on the line of its nodes. Return whether it
+    is one."""
+    deck, first = reader.deck, reader.node(card, 2)
+    second = reader.node(card, 3) if card[3] and card[3] != "0" else None
+    start = np.array(deck.nodes[first])
+    way = np.zeros(3) if second is None else np.subtract(deck.nodes[second], start)
+    length = float(np.linalg.norm(way))
+    if not any(stiffness[3:]) and (second is None or length and not card[7] and not any(stiffness[1:])):
+        return False
+    if card[9] and card[9] != "-1":
+        deck.refuse(card.name, "bush_offset", card.line)
+        return True
+    if card[7]:
+        axes = np.asarray(reader.frame(card, 7).directions(deck.nodes[first]))
+    elif not length:
+        axes = np.asarray(reader.frames["0"].axes)
+    else:
+        own = triad(start, start + way, _axis_y(reader, card, first))
+        if own is None and any(stiffness[at] for at in (1, 2, 4, 5)):
+            deck.refuse(card.name, "missing_coordinate_system", card.line)
+            return True
+        found = own if own is not None else triad(start, start + way, across(start, start + way))
+        assert found is not None
+        axes = found
+    centre = start + way * reader.number(card, 8, 0.5)
+    add_bush(deck, Bush(card.line, card.name, f"{reader.whole(card, 0)}", first, second, centre, axes,
+                        tuple(stiffness[:3]), tuple(stiffness[3:])))
+    return True
 
 
 def _bush(reader: Reader, card: Card) -> list[float]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from statejump.kinds.truss.importing.beams import node_stiffness
 from statejump.kinds.truss.importing.coordinates import BASIC, by_points
-from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.model import Deck, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions
@@ -166,32 +166,12 @@ def hold_singular(reader: Reader) -> None:
     """Hold components without stiffness, in displacement systems. Ends of beams that become pin-jointed bars are
     excepted: in Nastran they are stiff."""
     deck = reader.deck
-    stiffness: dict[str, np.ndarray] = {}
-    rotational: dict[str, np.ndarray] = {}
-    bent = {end for bar in deck.bars if bar.bends and not bar.bending for end in bar.nodes}
-    for bar in deck.bars:
-        if bar.bending:
-            blocks = node_stiffness(bar, *deck.ends_of(bar))
-            for end, turned in zip(bar.nodes, bar.bending.turned_ends):
-                for of, block in zip((stiffness, rotational) if turned else (stiffness,), blocks):
-                    of[end] = of.get(end, np.zeros((3, 3))) + block
-    pairs = [bar.nodes for bar in deck.bars if not bar.bending]
-    pairs += [(spring.first, spring.second) for spring in deck.springs if spring.second]
-    for first, second in pairs:
-        way = np.subtract(deck.nodes[second], deck.nodes[first])
-        length = float(np.linalg.norm(way))
-        if length == 0:
-            continue
-        block = np.outer(way, way) / length**2  # only which directions are stiff matters
-        for end in (first, second):
-            stiffness[end] = stiffness.get(end, np.zeros((3, 3))) + block
-    for spring in deck.springs:
-        if spring.direction is not None:
-            block = np.outer(spring.direction, spring.direction)
-            stiffness[spring.first] = stiffness.get(spring.first, np.zeros((3, 3))) + block
+    stiffness, rotational = _node_stiffness(reader)
     tied = deck.equation_directions()
+    _pass_to_masters(deck, stiffness, rotational, tied)
+    bent = {end for bar in deck.bars if bar.bends and not bar.bending for end in bar.nodes}
     for node, block in rotational.items():
-        axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
+        axes = _axes(reader, node)
         largest = np.einsum("ij,jk,ik->i", axes, block, axes).max()
         for free in _left_free(np.array(deck.held_rotations.get(node, [])).reshape(-1, 3), axes):
             if free @ block @ free <= EPZERO * largest:
@@ -200,13 +180,84 @@ def hold_singular(reader: Reader) -> None:
     for node, block in stiffness.items():
         if node in bent:
             continue
-        axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
+        axes = _axes(reader, node)
         largest = np.einsum("ij,jk,ik->i", axes, block, axes).max()
         for free in _left_free(np.vstack([held_directions(deck, node), *tied.get(node, [])]), axes):
             if free @ block @ free > EPZERO * largest:
                 continue
             deck.hold(node, [float(part) for part in free])
             deck.take("AUTOSPC", "directions of nodes without stiffness, held as in Nastran")
+
+
+def _axes(reader: Reader, node: str) -> np.ndarray:
+    """Return the displacement directions of a node as rows; a node that the import added has those of the basic
+    system."""
+    frame = reader.frames[reader.displacement_frame.get(node, "0")]
+    return np.asarray(frame.directions(reader.deck.nodes[node]))
+
+
+def _node_stiffness(reader: Reader) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Return the stiffness of displacements and of rotations of nodes, to which bars, beams, springs and hinges
+    contribute."""
+    deck = reader.deck
+    stiffness: dict[str, np.ndarray] = {}
+    rotational: dict[str, np.ndarray] = {}
+
+    def add(of: dict[str, np.ndarray], node: str, block: np.ndarray) -> None:
+        of[node] = of.get(node, np.zeros((3, 3))) + block
+
+    for bar in deck.bars:
+        first, second = deck.ends_of(bar)
+        way = second - first
+        length = float(np.linalg.norm(way))
+        if length == 0:
+            continue
+        over_length = (bar.young_modulus or 1.0) / length
+        if bar.bending:
+            moves, turns = node_stiffness(bar, first, second)
+            for end, turned in zip(bar.nodes, bar.bending.turned_ends):
+                add(stiffness, end, over_length * (bar.area or 1.0) * moves)
+                if turned:
+                    add(rotational, end, over_length * turns)
+        else:
+            for end in bar.nodes:
+                add(stiffness, end, over_length * (bar.area or 1.0) * np.outer(way, way) / length**2)
+    for spring in deck.springs:
+        way = np.array(spring.direction) if spring.second is None else np.subtract(
+            deck.nodes[spring.second], deck.nodes[spring.first])
+        ends = [spring.first] if spring.second is None else [spring.first, spring.second]
+        for node in ends if np.any(way) else ():
+            add(stiffness, node, spring.stiffness * np.outer(way, way) / (way @ way))
+    for hinge in deck.hinges:
+        across = np.eye(3) - np.outer(hinge.axis, hinge.axis)
+        blocks = [rotational.get(end, np.zeros((3, 3))) for end in hinge.nodes]
+        for end, other in zip(hinge.nodes, blocks[::-1]):
+            add(rotational, end, across @ other @ across + hinge.stiffness * np.outer(hinge.axis, hinge.axis))
+    return stiffness, rotational
+
+
+def _pass_to_masters(deck: Deck, stiffness: dict[str, np.ndarray], rotational: dict[str, np.ndarray],
+                     tied: dict[str, list[np.ndarray]]) -> None:
+    """Pass the stiffness of nodes on rigid arms to their masters, from the outermost arm inwards."""
+    waiting, outer = list(deck.arms), list(deck.arms)
+    while outer:  # the case refuses a ring of arms
+        masters = {arm.master for arm in waiting}
+        outer = [arm for arm in waiting if arm.node not in masters]
+        for arm in outer:
+            waiting.remove(arm)
+            held = np.diag([float(axis in arm.directions) for axis in "xyz"])
+            block = held @ stiffness.get(arm.node, np.zeros((3, 3))) @ held
+            x, y, z = np.subtract(deck.nodes[arm.node], deck.nodes[arm.master])
+            lever = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])  # displacement by a rotation
+            turns = lever.T @ block @ lever
+            if arm.rotations:
+                turns = turns + rotational.pop(arm.node, np.zeros((3, 3)))
+            stiffness[arm.master] = stiffness.get(arm.master, np.zeros((3, 3))) + block
+            rotational[arm.master] = rotational.get(arm.master, np.zeros((3, 3))) + turns
+            tied.setdefault(arm.node, []).extend(np.eye(3)["xyz".index(axis)] for axis in arm.directions)
+    for hinge in deck.hinges:
+        for end in hinge.nodes:
+            tied.setdefault(end, []).extend(np.eye(3))
 
 
 def _left_free(held: np.ndarray, axes: np.ndarray) -> Iterator[np.ndarray]:

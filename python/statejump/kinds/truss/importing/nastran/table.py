@@ -19,9 +19,11 @@ SHELL, SOLID = "shells are no part of a truss", "solids are no part of a truss"
 RIGID = "rigid element of another kind"
 SUPORTED = "supports of inertia relief or of a rigid body; in modes and responses they hold nothing and are left out"
 EXACT = "reduction, exact in statics"
-BODY = "one node of those at one place, where forces and masses of the others act; apart from that it is refused"
+BODY = ("one node of those at one position, where forces and masses of the others act; `[[rigid]]` if bars end at "
+        "several positions; free rotations become hinges; some displacements beside free rotations are refused")
 EXPANDS = "thermal expansion of a rigid bar"
 TWIST = "moment, where beams end; nothing where it twists rods; with `--beams-as-bars` refused if it bends beams"
+CELAS = "spring along its line or to the ground; of rotations where supports hold its node across its axis"
 POINTS = "end A: C1 C2 D1 D2 E1 E2 F1 F2"
 
 CARDS: dict[str, Card] = table(
@@ -57,14 +59,13 @@ CARDS: dict[str, Card] = table(
          idle={"GE": MATERIAL_DAMPING, "ST SC SS": "stress limits: only margins are made of them",
                "MCSID": "direction of stress output"}),
     # Springs and masses.
-    used("CELAS1", "spring along its line or to the ground", "EID PID G1 C1 G2 C2"),
-    used("CELAS2", "spring along its line or to the ground", "EID K G1 C1 G2 C2 GE S",
+    used("CELAS1", CELAS, "EID PID G1 C1 G2 C2"),
+    used("CELAS2", CELAS, "EID K G1 C1 G2 C2 GE S",
          idle={"GE": MATERIAL_DAMPING, "S": OUTPUT}),
     used("PELAS", "stiffness of springs", "PID1 K1 GE1 S1 PID2 K2 GE2 S2",
          idle={"GE1 GE2": MATERIAL_DAMPING, "S1 S2": OUTPUT}),
-    used("CBUSH", "springs along its line or to the ground", "EID PID GA GB GO/X1 X2 X3 CID S OCID S1 S2 S3",
-         idle={"GO/X1 X2 X3": "the spring acts along its line",
-               "S OCID S1 S2 S3": "place of the spring between its nodes: they do not rotate"}),
+    used("CBUSH", "springs along its line or to the ground; where beams end, springs between rigid arms, without OCID",
+         "EID PID GA GB GO/X1 X2 X3 CID S OCID S1 S2 S3", idle={"S1 S2 S3": "they belong to OCID"}),
     used("PBUSH", "stiffness of springs", "PID K Ki B GE RCV M", idle={"B GE": MATERIAL_DAMPING, "RCV": OUTPUT},
          refused={"M": "mass of a spring"}, own=True),
     used("CONM1", "mass of a node", "EID G CID M11 M21 M22 M31 M32 M33 M41 M42 M43 M44 M51 M52 M53 M54 M55 M61 M62 M63 "
@@ -179,7 +180,7 @@ PARAMS: dict[str, Card] = table(
          "AUTOQSET RMXPANEL F56 RESLTOPT SOLADJC SDRPOPT SDRDENS SERST SECOMB SUBCASID MPCX EXTUNIT EXTDROUT OELMSET "
          "OGRDSET ISAVE NEWSET HDF5 CONM2 PEDGE MNLEMPRT FLUIDMP STRUCTMP FREQDEP OMACHPR GYROAVG WR3 WR4 ROTCSV "
          "ROTGPF ENFMETH ENFMOTN NQMAX CYCIO CYCSEQ OIBULK POSTEXT UNITSYS DBCDIAG DMIGNRG LSTRN COMPARE PNCHDB EPSHT "
-         "MAXIT SUPER TINY2 OMSGLVL BETAD EPSIO GRDEQ SESDAMP",
+         "MAXIT SUPER TINY2 OMSGLVL BETAD EPSIO GRDEQ SESDAMP CDIF PRTGPL PRTEQXIN PRTBGPDT",
          "output, damping, or how a program solves"),
     idle("ARP_TOL CBMIN3 CBMIN4 CBMIN4T CHKGRDS CRS_CCS CUSERIN DARPACK DELBAN EIGESTL EIGNORM2 ELFORCEN EPSERR EPSIL "
          "EQCHECK GRIDSEQ LANCMETH MXITERI PRTBASIC PRTCGLTM PRTCORD PRTCSTM PRTDLR PRTDOF PRTFOR PRTGMN PRTGOA "
