@@ -15,6 +15,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, vstack
 
 from statejump.kinds.truss.bounds.sliding import Sliding
+from statejump.kinds.truss.joints import JOINTS
 
 MOST_ROWS = 4000  # of elements and directions, for which the dense compliance is computed
 ROUNDS = 60
@@ -103,8 +104,9 @@ class _Arms:
 
 
 def _arms(of: Sliding) -> _Arms:
-    latches = of.truss.joints["latch_hinge"]
-    which = [index for index, joint in enumerate(of.joints) if joint.section == "latch_hinge"]
+    (section,) = (joint.section for joint in JOINTS if joint.turns and not joint.bends)
+    latches = of.truss.joints[section]
+    which = [index for index, joint in enumerate(of.joints) if joint.section == section]
     arms = [(latch, link) for latch, pair in enumerate(latches.links) for link in pair if link >= 0]
     pairs = np.array([of.truss.links.nodes[link] for _, link in arms], dtype=int).reshape(-1, 2)
     owner = np.array([latch for latch, _ in arms], dtype=int)

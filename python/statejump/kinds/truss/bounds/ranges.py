@@ -16,6 +16,7 @@ from statejump.core.errors import NotAllowed
 from statejump.core.start import FRICTIONLESS
 from statejump.kinds.truss.bounds.programs import Polytope
 from statejump.kinds.truss.bounds.sliding import Sliding
+from statejump.kinds.truss.joints import JOINTS
 
 MOST_JOINTS = 100  # of linear programs
 ROUNDS = 25
@@ -145,8 +146,9 @@ def within(of: Sliding, temperatures: Temperatures) -> WithinRange:
     """Return the rest states within a temperature range, and whether joints settle."""
     rubbing = np.flatnonzero(of.limit_N > 0)
     limit = of.limit_N[rubbing]
+    in_part = {joint.section for joint in JOINTS if joint.slips_in_part}
     smooth = [str(of.joints[index]) for index in rubbing
-              if of.joints[index].section == "iwan_joint" or of.truss.sticking == "partial_slip"]
+              if of.joints[index].section in in_part or of.truss.sticking == "partial_slip"]
     if len(rubbing) > MOST_JOINTS:
         return WithinRange(of, Verdict("unknown", f"not computed for more than {MOST_JOINTS} joints with friction"))
     flexible = of.compliance[np.ix_(rubbing, rubbing)] + np.diag(1 / of.sticking_N_per_m[rubbing])

@@ -8,6 +8,7 @@ import numpy as np
 
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.bounds.sliding import Sliding
+from statejump.kinds.truss.joints import JOINTS
 
 # Half ranges of linear functions of the dofs (rows, dofs), including the margin of exact geometry.
 Ranges = Callable[[np.ndarray], np.ndarray]
@@ -46,7 +47,7 @@ def _sliders(of: Sliding, ranges: Ranges) -> Iterator[str]:
 
 
 def _hinges(of: Sliding, ranges: Ranges) -> Iterator[str]:
-    for section in ("latch_hinge", "hinge"):
+    for section in (joint.section for joint in JOINTS if joint.turns):
         which, hinges = _of_section(of, section), of.truss.joints[section]
         if not len(which):
             continue

@@ -67,6 +67,7 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
 
     section = "iwan_joint"
     noun = "an Iwan joint"
+    slips_in_part = True
     Item = IwanJoint
     Arrays = IwanJoints
     columns: ClassVar[tuple[ItemColumn, ...]] = (

@@ -216,6 +216,7 @@ class JointType(PartType[ItemType, ArraysType]):
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
     turns: ClassVar[bool] = False  # its friction is a moment
+    slips_in_part: ClassVar[bool] = False  # a part of it slips at every load
     bends: ClassVar[bool] = False  # it rotates its nodes; models without rotations refuse it
 
     @property
