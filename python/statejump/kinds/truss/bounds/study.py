@@ -27,7 +27,6 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.solve import path as start_of
 from statejump.kinds.truss.solve import solve
 
-ROUNDED = 1e-12  # of the largest gain
 MOST_SIMULATED = 100  # joints of a case that is simulated for comparison
 POINTS = 24  # ranges of the picture of the spread over the temperature range
 MOST_FACTOR = 200.0  # on the range up to which joints settle
@@ -231,4 +230,4 @@ def _bound(of: Sliding, output: Output, exact: Margin, found: WithinRange, tempe
         range_spread_m=in_range[0], range_jump_m=in_range[1],
         simulated_m=nan if len(path_m) < 2 else abs(float(output.value(path_m[-1]) - output.value(path_m[0]))),
         attained_m=nan if reached is None else reached.spread_m, fraction=parts / (parts.sum() or 1.0),
-        peak_thermal_m=temperatures.peak(np.where(np.abs(thermal) < ROUNDED * np.abs(thermal).max(), 0.0, thermal)))
+        peak_thermal_m=temperatures.peak(thermal))
