@@ -27,7 +27,7 @@ COMPLIANCE = 1e-13  # of guides over the mean stiffness: dependent guides are pe
 SOFTER = 1e-6  # likewise, where pivots stay on the diagonal: their signs are those of the eigenvalues
 FREE = 1e-13  # stiffness of a mode over that of the stiffest dof, below which the mode is free
 ROUNDS = 5  # of inverse iteration
-ROUNDED = 1e-10  # rounding of a sum over the sum of its absolute terms: 2e-16 times the condition number
+ROUNDED = 1e-10  # of the largest displacement by a unit force: rounding, 2e-16, times the condition number
 
 
 @dataclass(frozen=True)
@@ -106,11 +106,12 @@ class Sliding:
     def gains(self, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return B K⁻¹c (joints,) [m/N] and G ᵀK⁻¹c (elements,) [m/K] of an output c·q [m].
 
-        Gains by temperature whose terms cancel to rounding are 0.
+        Gains by temperature that are rounding of the solution are 0.
         """
         adjoint = self.solve(row)
         thermal = np.asarray(self.heating_N_per_K.T @ adjoint)
-        thermal[np.abs(thermal) < ROUNDED * (abs(self.heating_N_per_K).T @ np.abs(adjoint))] = 0.0
+        largest = np.asarray(abs(self.heating_N_per_K).sum(axis=0)).ravel() * np.abs(adjoint).max(initial=0.0)
+        thermal[np.abs(thermal) < ROUNDED * largest] = 0.0
         return np.asarray(self.slides @ adjoint), thermal
 
 
