@@ -61,7 +61,7 @@ def surface(model: Model, block: Block, scope: Scope) -> None:
 
 
 def coupling(model: Model, block: Block, scope: Scope) -> None:
-    """Read the master and the surface of a coupling; *KINEMATIC follows."""
+    """Read the master and the surface of a coupling; ``*KINEMATIC`` follows."""
     name = model.needed(block, "SURFACE").upper()
     nodes = model.surfaces.get(scope.prefix + name, model.surfaces.get(name))
     if nodes is None:
