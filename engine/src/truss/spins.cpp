@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
+#include <set>
+#include <utility>
+#include <variant>
 
 #include "newton.hpp"
 #include "parts.hpp"
@@ -29,56 +31,93 @@ Vector3d axis_of(const Model& model, const Beam& beam) {
       .normalized();
 }
 
-/// Beams in rows: parallel beams that share a node are in one row.
-std::vector<std::vector<int>> rows_of(const Model& model) {
-  const auto count = model.beams.size();
-  std::vector<int> root(count);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int one) {
-    while (root[index(one)] != one) one = root[index(one)] = root[index(root[index(one)])];
+/// Disjoint sets of the numbers below a count.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0); }
+  int find(int one) {
+    while (root_[index(one)] != one) one = root_[index(one)] = root_[index(root_[index(one)])];
     return one;
-  };
-  std::vector<std::vector<int>> at(model.nodes.size());
-  for (std::size_t b = 0; b < count; ++b) {
-    for (const int node : {model.beams[b].first, model.beams[b].second}) {
-      for (const int other : at[index(node)]) {
-        const Vector3d own = axis_of(model, model.beams[b]);
-        if (own.cross(axis_of(model, model.beams[index(other)])).norm() > parallel) continue;
-        root[index(find(static_cast<int>(b)))] = find(other);
-        break;
-      }
-      at[index(node)].push_back(static_cast<int>(b));
+  }
+  void unite(int one, int other) { root_[index(find(one))] = find(other); }
+  /// The sets in ascending order of their first number.
+  std::vector<std::vector<int>> all() {
+    std::vector<std::vector<int>> found(root_.size());
+    std::vector<int> place(root_.size(), -1);
+    int count = 0;
+    for (int one = 0; one < static_cast<int>(root_.size()); ++one) {
+      int& at = place[index(find(one))];
+      if (at < 0) at = count++;
+      found[index(at)].push_back(one);
     }
+    found.resize(index(count));
+    return found;
   }
-  std::vector<std::vector<int>> rows(count);
-  for (std::size_t b = 0; b < count; ++b) {
-    rows[index(find(static_cast<int>(b)))].push_back(static_cast<int>(b));
-  }
-  std::erase_if(rows, [](const std::vector<int>& row) { return row.empty(); });
-  return rows;
-}
 
-/// Nodes of a row of beams.
-std::vector<int> nodes_of(const Model& model, const std::vector<int>& row) {
-  std::vector<int> nodes;
-  for (const int b : row) {
-    nodes.push_back(model.beams[index(b)].first);
-    nodes.push_back(model.beams[index(b)].second);
+ private:
+  std::vector<int> root_;
+};
+
+/// Nodes that rotate together about some axis: those of a rigid arm or a hinge.
+Sets joined_nodes(const Model& model) {
+  Sets nodes(model.nodes.size());
+  for (const Joint& joint : model.joints) {
+    if (const auto* arm = std::get_if<RigidArm>(&joint)) nodes.unite(arm->node, arm->master);
+    if (const auto* hinge = std::get_if<Hinge>(&joint)) nodes.unite(hinge->second, hinge->first);
   }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
 
-/// Displacements of a spin of nodes by 1 rad. Empty if a constraint couples their rotations to
-/// others.
-std::optional<Eigen::SparseVector<double>> spin_of(const System& system,
-                                                   const std::vector<int>& nodes,
-                                                   const Vector3d& axis) {
+/// Beams and nodes that may spin together.
+struct Row {
+  std::vector<int> beams;
+  std::vector<int> nodes;
+};
+
+/// Rows of parallel beams that share nodes, also by rigid arms and hinges.
+std::vector<Row> rows_of(const Model& model) {
+  Sets nodes = joined_nodes(model);
+  Sets beams(model.beams.size());
+  std::vector<std::vector<int>> at(model.nodes.size());
+  for (int b = 0; b < static_cast<int>(model.beams.size()); ++b) {
+    const Beam& beam = model.beams[index(b)];
+    const Vector3d axis = axis_of(model, beam);
+    for (const int node : {beam.first, beam.second}) {
+      std::vector<int>& others = at[index(nodes.find(node))];
+      for (const int other : others) {
+        if (axis.cross(axis_of(model, model.beams[index(other)])).norm() > parallel) continue;
+        beams.unite(b, other);
+        break;
+      }
+      others.push_back(b);
+    }
+  }
+  const std::vector<std::vector<int>> joined = nodes.all();
+  std::vector<int> group(model.nodes.size(), 0);
+  for (std::size_t g = 0; g < joined.size(); ++g) {
+    for (const int node : joined[g]) group[index(node)] = static_cast<int>(g);
+  }
+  std::vector<Row> rows;
+  for (std::vector<int>& row : beams.all()) {
+    std::set<int> touched;
+    for (const int b : row) {
+      for (const int node : {model.beams[index(b)].first, model.beams[index(b)].second}) {
+        const std::vector<int>& all = joined[index(group[index(node)])];
+        touched.insert(all.begin(), all.end());
+      }
+    }
+    rows.push_back({std::move(row), {touched.begin(), touched.end()}});
+  }
+  return rows;
+}
+
+/// Displacements of a spin of nodes by 1 rad. Rotations that constraints determine follow.
+Eigen::SparseVector<double> spin_of(const System& system, const std::vector<int>& nodes,
+                                    const Vector3d& axis) {
   Eigen::SparseVector<double> spin(system.displacements());
   for (const int n : nodes) {
     const NodeDofs& dofs = system.dofs().at(rotation_site(system.model(), n));
-    if (dofs.sums != nullptr) return std::nullopt;
+    if (dofs.sums != nullptr) continue;
     for (int i = 0; i < dofs.freedoms; ++i) {
       const double along = system.model().nodes[index(n)].arm * dofs.directions->col(i).dot(axis);
       if (along != 0.0) spin.coeffRef(dofs.row + i) = along;
@@ -95,6 +134,16 @@ double largest(const Eigen::SparseVector<double>& of) {
   return most;
 }
 
+/// Whether moments of the nodes do work in a spin. Their parts along the axis are rounded.
+bool is_driven(const Model& model, const std::vector<int>& nodes, const Vector3d& axis) {
+  double moment = 0.0, size = 0.0;
+  for (const int n : nodes) {
+    moment += axis.dot(model.nodes[index(n)].moment);
+    size += model.nodes[index(n)].moment.norm();
+  }
+  return std::abs(moment) > 1e-12 * size;
+}
+
 }  // namespace
 
 std::vector<SpinSpring> spin_springs(const Model& model) {
@@ -105,20 +154,18 @@ std::vector<SpinSpring> spin_springs(const Model& model) {
       VectorXd::Zero(system.unknowns()), 0.0, system.all_stick(), JointModel::pins, 1.0, 0.0);
   const Eigen::SparseMatrix<double> stiffness = lower.selfadjointView<Eigen::Lower>();
   std::vector<SpinSpring> found;
-  for (const std::vector<int>& row : rows_of(model)) {
-    const Beam& first = model.beams[index(row.front())];
+  for (const Row& row : rows_of(model)) {
+    const Beam& first = model.beams[index(row.beams.front())];
     const Vector3d axis = axis_of(model, first);
-    const std::vector<int> nodes = nodes_of(model, row);
-    const auto spin = spin_of(system, nodes, axis);
-    if (!spin || spin->nonZeros() == 0) continue;
-    const Eigen::SparseVector<double> force = stiffness * *spin;
-    if (largest(force) > free_share * system.stiffness_scale() * largest(*spin)) continue;
-    double moment = 0.0;
-    for (const int n : nodes) moment += axis.dot(model.nodes[index(n)].moment);
-    if (moment != 0.0) continue;
-    const auto turns = std::find_if(nodes.begin(), nodes.end(), [&](int n) {
+    const Eigen::SparseVector<double> spin = spin_of(system, row.nodes, axis);
+    if (spin.nonZeros() == 0) continue;
+    const Eigen::SparseVector<double> force = stiffness * spin;
+    if (largest(force) > free_share * system.stiffness_scale() * largest(spin)) continue;
+    if (is_driven(model, row.nodes, axis)) continue;
+    const auto turns = std::find_if(row.nodes.begin(), row.nodes.end(), [&](int n) {
       const NodeDofs& dofs = system.dofs().at(rotation_site(model, n));
-      return dofs.freedoms > 0 && !(dofs.directions->transpose() * axis).isZero(0.0);
+      return dofs.sums == nullptr && dofs.freedoms > 0 &&
+             !(dofs.directions->transpose() * axis).isZero(0.0);
     });
     found.push_back({first.name, *turns, spring_share * system.stiffness_scale(), axis});
   }

@@ -18,7 +18,6 @@ from statejump.kinds.truss.importing.bending import Section as BeamSection
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card, Field
 from statejump.kinds.truss.importing.model import Bar, Deck, Options
-from statejump.kinds.truss.importing.spins import hold_spins
 
 # Order in which keywords are read, because a deck may have them in any order. Keywords of one stage are read in the
 # deck's order.
@@ -78,7 +77,6 @@ def read(path: Path, options: Options | None = None) -> Deck:
                 stage[block.name](model, block, scope)
     _bars(model)
     settle_bodies(deck)
-    hold_spins(deck)
     split_tapered(deck)
     deck.settle()
     return deck

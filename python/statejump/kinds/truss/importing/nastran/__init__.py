@@ -14,7 +14,6 @@ from statejump.kinds.truss.importing.nastran import bodies, control, elements, l
 from statejump.kinds.truss.importing.nastran.cards import Card, number_of, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
-from statejump.kinds.truss.importing.spins import hold_spins
 
 # In the order of reading: each reader needs the results of those before it.
 READERS: dict[str, Callable[[Reader, Card], None]] = {
@@ -68,7 +67,6 @@ def read(path: Path, options: Options | None = None) -> Deck:
     settle_bodies(deck)
     if chosen.autospc:
         nodes.hold_singular(reader)
-    hold_spins(deck)
     split_tapered(deck)
     if chosen.solution.startswith("106"):  # in this solution TREF belongs to the coefficient of expansion only
         for bar in deck.bars:
