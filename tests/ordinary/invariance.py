@@ -45,6 +45,7 @@ class Solved:
     :param slack: nodes whose links all carry no force in some state, so that only dashpots determine their position
     :param closes: whether one of these links carries force in another state
     :param largest_m: largest displacement on the path [m]
+    :param loose: whether joints lost contact, so that statics does not determine the position of a part
     :param failure: kind of the failure, "" for none
     """
 
@@ -54,23 +55,27 @@ class Solved:
     largest_m: float = 0.0
     states: int = 0
     events: int = 0
+    loose: bool = False
     failure: str = ""
 
 
 def solved(document: Document) -> Solved:
     """Return the jumps of a case, solved with the options in its document."""
     try:
-        path = sj.load(document).reduced().native
+        run = sj.load(document).reduced()
     except FailedRun as failed:
         return Solved({}, failure=str(getattr(failed, "reason", type(failed).__name__)))
     except StatejumpError as refused:
         return Solved({}, failure=f"refused: {refused}")
+    path = run.native
     ends = path.cycle_ends["displacement_m"][:, :, : document["truss"]["dimension"]]
     jumps = ends[1:] - ends[:1]
+    loose = any(getattr(one, "code", "") == "slack" for one in run.warnings)
     idle = (force_n := np.abs(path.states["axial_force_N"])) <= IDLE * force_n.max(initial=0.0)
     return Solved({name: jumps[:, number] for number, name in enumerate(path.truss.nodes.names)},
                   slack_nodes(document, idle), bool((idle.any(axis=0) & ~idle.all(axis=0)).any()),
-                  float(np.abs(path.states["displacement_m"]).max()), len(path.states["time_s"]), len(path.events))
+                  float(np.abs(path.states["displacement_m"]).max()), len(path.states["time_s"]), len(path.events),
+                  loose)
 
 
 def slack_nodes(document: Document, idle: np.ndarray) -> frozenset[str]:
