@@ -450,3 +450,15 @@ def test_commands_without_beams_refuse_them(statejump: Callable[..., Outcome], c
     refused = statejump(*command, "trusses/boom")
     assert refused.status == 2
     assert "beam 'bay_1'" in refused.errors
+
+
+@pytest.mark.parametrize("load_N", [0.01, 100.0])
+def test_without_temperatures_each_increment_is_one_solve(load_N: float) -> None:
+    """Nothing moves after the start, and temperatures do no work: rounding does not shorten steps."""
+    nodes = [clamp("N0", (0.0, 0.0, 0.0)), *(node(f"N{k}", (float(k), 0.3 * (k % 2), 0.0)) for k in range(1, 12))]
+    made = frame(*nodes, change_K=0.0, dimension=3,
+                 beam=[{"nodes": [f"N{k}", f"N{k + 1}"], "shape": "rectangle", "dimensions_m": [0.1, 0.2],
+                        "axis_y": [0.0, 0.0, 1.0]} for k in range(11)])
+    made["node"][-1]["force_N"] = [0.0, -load_N, 0.0]
+    path = solve.path(parse_case(made).resolve())
+    assert path.solves <= len(path.states["time_s"]) + 3  # the start, and one after each corner

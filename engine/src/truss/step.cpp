@@ -56,6 +56,7 @@ double PathFollower::first_edge(double target, const VectorXd& to, const StepSta
 /// error, it is rounding, and the step is accepted. Half of the allowed error is distributed over
 /// time. Each step may use a small fraction of the other half, so that single events do not need
 /// short steps. Work absorbed by dashpots of slack joints is no error.
+/// Without temperature changes the error is rounding, and the work has no scale.
 bool PathFollower::balances(const State& next, const VectorXd& to, double step, double taken) {
   const double duration = model.programs.front().duration();
   const double heat = next.joint_dissipation.sum();
@@ -89,7 +90,11 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   // The error of work and heat is of fourth order in the step length, or higher.
   const double longer = step * std::sqrt(std::sqrt(0.5 * allowed / std::max(lost, rounding)));
   const bool is_smooth = !system.slips_smoothly() && !system.has_kinks();
-  const bool controlled = options.locate_events && is_smooth && !passes_changes;
+  const bool heats = std::any_of(
+      model.programs.begin(), model.programs.end(), [&](const thermal::Program& program) {
+        return program.temperature_change(time) != program.temperature_change(time + step);
+      });
+  const bool controlled = options.locate_events && is_smooth && !passes_changes && heats;
   if (controlled && step > shortest_balanced && lost > allowed && lost < 0.5 * refused_loss) {
     refused_loss = lost;
     steps_to_hold = most_held_steps;
