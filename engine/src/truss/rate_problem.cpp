@@ -109,19 +109,39 @@ enum class Guarantee : unsigned char {
   one,
 };
 
+/// Candidates that slide in some motion. Joints that stick prevent the slides of all others, whose
+/// rows and columns are rounding. Empty if the matrix is not positive semidefinite.
+std::optional<std::vector<Eigen::Index>> that_slide(const Eigen::MatrixXd& matrix) {
+  const double rounding = epsilon * matrix.cwiseAbs().maxCoeff();
+  std::vector<Eigen::Index> found;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (matrix(i, i) > rounding) {
+      found.push_back(i);
+    } else if (matrix.row(i).cwiseAbs().maxCoeff() > rounding ||
+               matrix.col(i).cwiseAbs().maxCoeff() > rounding) {
+      return std::nullopt;
+    }
+  }
+  return found;
+}
+
 /// See RateProblem. The symmetric part is compared with zero to √ε of a matrix with unit diagonal:
 /// the factors of the equations and the matrix itself each lose some of the ε of its entries.
 Guarantee guaranteed_by(Eigen::MatrixXd matrix) {
   if (matrix.size() == 0) return Guarantee::one;  // no candidates
-  if (!(matrix.diagonal().array() > 0.0).all()) return Guarantee::none;
+  const Eigen::Index all = matrix.rows();
+  const auto moving = that_slide(matrix);
+  if (!moving) return Guarantee::none;
+  if (moving->empty()) return Guarantee::one_motion;
+  matrix = matrix(*moving, *moving).eval();
   const VectorXd unit = matrix.diagonal().cwiseSqrt().cwiseInverse();
   matrix = unit.asDiagonal() * matrix * unit.asDiagonal();
   const double rounding = std::sqrt(epsilon);
   const Eigen::MatrixXd symmetric = 0.5 * (matrix + matrix.transpose());
   const Eigen::LDLT<Eigen::MatrixXd> factors(symmetric);
-  if (factors.info() == Eigen::Success && (factors.vectorD().array() > rounding).all()) {
-    return Guarantee::one;
-  }
+  const bool is_definite =
+      factors.info() == Eigen::Success && (factors.vectorD().array() > rounding).all();
+  if (is_definite && matrix.rows() == all) return Guarantee::one;
   if ((matrix - symmetric).lpNorm<Eigen::Infinity>() > rounding) return Guarantee::none;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric, Eigen::EigenvaluesOnly);
   const bool is_semidefinite =
