@@ -15,9 +15,6 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// A mode softer than this fraction of the stiffest element counts as free. Rounding is 1e-16 of
-/// that stiffness; the softest mode of a ring of 100 000 bays has 1e-12.
-constexpr double free_share = 1e-13;
 constexpr int most_modes = 6;
 
 /// Penalty stiffness of closed joints in the stability check, relative to the stiffest element. The

@@ -203,6 +203,10 @@ struct FoundModes {
   explicit operator bool() const { return count > 0; }
 };
 
+/// A motion that is softer than this fraction of the stiffest element counts as free. Rounding is
+/// 1e-16 of that stiffness; the softest mode of a ring of 100 000 bays has 1e-12.
+constexpr double free_share = 1e-13;
+
 /// Modes without stiffness at z, with the joints in the given statuses.
 FoundModes mechanism(const System& system, const VectorXd& z, double time, const Statuses& statuses,
                      JointModel joints);

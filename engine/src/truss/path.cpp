@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -137,12 +138,14 @@ Note spin_note(const Model& model) {
 Path solve(const Model& given, const Options& options) {
   given.validate();
   Model with_springs;
-  std::vector<SpinSpring> springs = detail::spin_springs(given);
-  if (!springs.empty()) {
+  std::optional<System> built(std::in_place, given);
+  if (std::vector<SpinSpring> springs = detail::spin_springs(*built); !springs.empty()) {
     with_springs = given;
     with_springs.spin_springs = std::move(springs);
+    built.emplace(with_springs);
   }
-  const Model& model = with_springs.spin_springs.empty() ? given : with_springs;
+  const System& system = *built;
+  const Model& model = system.model();
   for (const Joint& joint : model.joints) {
     const auto* ball = std::get_if<BallJoint>(&joint);
     // Its rows are slides of the deflected contact.
@@ -158,7 +161,6 @@ Path solve(const Model& given, const Options& options) {
                   "energy_tolerance", options.energy_tolerance, "above 0 and at most 1");
   kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
   kernel::require(options.most_steps >= 1, "most_steps", options.most_steps, ">= 1");
-  const System system(model);
   const double duration = model.programs.front().duration();
   double now = 0.0;
   const auto going_on = [&] { return !options.progress || options.progress(now / duration); };

@@ -110,7 +110,7 @@ enum class Guarantee : unsigned char {
 };
 
 /// Candidates that slide in some motion. Joints that stick prevent the slides of all others, whose
-/// rows and columns are rounding. Empty if the matrix is not positive semidefinite.
+/// rows and columns are rounding. Nothing if the matrix is not positive semidefinite.
 std::optional<std::vector<Eigen::Index>> that_slide(const Eigen::MatrixXd& matrix) {
   const double rounding = epsilon * matrix.cwiseAbs().maxCoeff();
   std::vector<Eigen::Index> found;

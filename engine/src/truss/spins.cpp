@@ -3,8 +3,8 @@
 
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <variant>
@@ -16,9 +16,6 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Resistance to a spin below this fraction of the stiffest element counts as none, as in the
-/// search for mechanisms.
-constexpr double free_share = 1e-13;
 /// Stiffness of the springs over that of the stiffest element. It is far above free_share, and far
 /// below the torsional stiffness of beams, (radius/length)² of the axial one.
 constexpr double spring_share = 1e-9;
@@ -31,39 +28,25 @@ Vector3d axis_of(const Model& model, const Beam& beam) {
       .normalized();
 }
 
-/// Disjoint sets of the numbers below a count.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0); }
-  int find(int one) {
-    while (root_[index(one)] != one) one = root_[index(one)] = root_[index(root_[index(one)])];
-    return one;
-  }
-  void unite(int one, int other) { root_[index(find(one))] = find(other); }
-  /// The sets in ascending order of their first number.
-  std::vector<std::vector<int>> all() {
-    std::vector<std::vector<int>> found(root_.size());
-    std::vector<int> place(root_.size(), -1);
-    int count = 0;
-    for (int one = 0; one < static_cast<int>(root_.size()); ++one) {
-      int& at = place[index(find(one))];
-      if (at < 0) at = count++;
-      found[index(at)].push_back(one);
-    }
-    found.resize(index(count));
-    return found;
-  }
+using Sets = boost::disjoint_sets_with_storage<>;
 
- private:
-  std::vector<int> root_;
-};
+/// The members of each set, at the place of its representative.
+std::vector<std::vector<int>> members(Sets& sets, std::size_t count) {
+  std::vector<std::vector<int>> found(count);
+  for (std::size_t one = 0; one < count; ++one) {
+    found[sets.find_set(one)].push_back(static_cast<int>(one));
+  }
+  return found;
+}
 
 /// Nodes that rotate together about some axis: those of a rigid arm or a hinge.
 Sets joined_nodes(const Model& model) {
   Sets nodes(model.nodes.size());
   for (const Joint& joint : model.joints) {
-    if (const auto* arm = std::get_if<RigidArm>(&joint)) nodes.unite(arm->node, arm->master);
-    if (const auto* hinge = std::get_if<Hinge>(&joint)) nodes.unite(hinge->second, hinge->first);
+    if (const auto* arm = std::get_if<RigidArm>(&joint)) nodes.union_set(arm->node, arm->master);
+    if (const auto* hinge = std::get_if<Hinge>(&joint)) {
+      nodes.union_set(hinge->second, hinge->first);
+    }
   }
   return nodes;
 }
@@ -83,31 +66,31 @@ std::vector<Row> rows_of(const Model& model) {
     const Beam& beam = model.beams[index(b)];
     const Vector3d axis = axis_of(model, beam);
     for (const int node : {beam.first, beam.second}) {
-      std::vector<int>& others = at[index(nodes.find(node))];
+      std::vector<int>& others = at[nodes.find_set(node)];
       for (const int other : others) {
         if (axis.cross(axis_of(model, model.beams[index(other)])).norm() > parallel) continue;
-        beams.unite(b, other);
+        beams.union_set(b, other);
         break;
       }
       others.push_back(b);
     }
   }
-  const std::vector<std::vector<int>> joined = nodes.all();
-  std::vector<int> group(model.nodes.size(), 0);
-  for (std::size_t g = 0; g < joined.size(); ++g) {
-    for (const int node : joined[g]) group[index(node)] = static_cast<int>(g);
-  }
+  const std::vector<std::vector<int>> joined = members(nodes, model.nodes.size());
   std::vector<Row> rows;
-  for (std::vector<int>& row : beams.all()) {
+  for (std::vector<int>& row : members(beams, model.beams.size())) {
+    if (row.empty()) continue;
     std::set<int> touched;
     for (const int b : row) {
       for (const int node : {model.beams[index(b)].first, model.beams[index(b)].second}) {
-        const std::vector<int>& all = joined[index(group[index(node)])];
-        touched.insert(all.begin(), all.end());
+        const std::vector<int>& together = joined[nodes.find_set(node)];
+        touched.insert(together.begin(), together.end());
       }
     }
     rows.push_back({std::move(row), {touched.begin(), touched.end()}});
   }
+  // In the order of the beams, so that the note names the same beam of a row however sets merge.
+  std::sort(rows.begin(), rows.end(),
+            [](const Row& a, const Row& b) { return a.beams.front() < b.beams.front(); });
   return rows;
 }
 
@@ -146,10 +129,9 @@ bool is_driven(const Model& model, const std::vector<int>& nodes, const Vector3d
 
 }  // namespace
 
-std::vector<SpinSpring> spin_springs(const Model& model) {
-  if (model.beams.empty()) return {};
-  const System system(model);
-  if (!system.dofs().has_rotations()) return {};
+std::vector<SpinSpring> spin_springs(const System& system) {
+  const Model& model = system.model();
+  if (model.beams.empty() || !system.dofs().has_rotations()) return {};
   const Eigen::SparseMatrix<double> lower = system.penalty_stiffness(
       VectorXd::Zero(system.unknowns()), 0.0, system.all_stick(), JointModel::pins, 1.0, 0.0);
   const Eigen::SparseMatrix<double> stiffness = lower.selfadjointView<Eigen::Lower>();

@@ -10,6 +10,7 @@
 #include "statejump/kernel/rotation.hpp"
 #include "statejump/truss/joints/ball_joint.hpp"
 #include "truss/joints/hertz_contact.hpp"
+#include "truss/joints/relative_rotation.hpp"
 
 namespace statejump::truss::detail {
 
@@ -140,7 +141,7 @@ inline BallState<double> ball_state_at(const BallJoint& joint, const Eigen::Vect
   return ball_state<double>(
       joint, force, at.temperature_change, at.opening,
       [&](std::size_t from, std::size_t to) { return at.between(from, to); },
-      [&](std::size_t site) { return Eigen::Vector3d(at.moved[site] / at.frame.arms[site]); });
+      [&](std::size_t site) { return rotation_vector(at, site); });
 }
 
 /// The ratio of an angle to its sine, as a function of the cosine of the angle.

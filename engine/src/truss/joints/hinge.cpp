@@ -18,6 +18,7 @@ namespace statejump::truss {
 
 using detail::index;
 using detail::QuaternionRates;
+using detail::rotation_vector;
 using detail::SpinGradient;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -26,10 +27,6 @@ namespace {
 
 /// Local sites: rotations of the nodes.
 constexpr std::size_t of_first = 0, of_second = 1;
-
-Vector3d rotation_vector(const Trial& trial, std::size_t which) {
-  return trial.moved[which] / trial.frame.arms[which];
-}
 
 /// Rotation of the second node relative to the first one, in axes that rotate with the first node.
 struct Relative : detail::RotationAt {

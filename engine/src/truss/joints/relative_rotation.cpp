@@ -30,10 +30,6 @@ SpinGradient angle_gradient(const RotationAt& at, const Vector3d& axis) {
 
 namespace {
 
-Vector3d rotation_vector(const Trial& trial, std::size_t site) {
-  return trial.moved[site] / trial.frame.arms[site];
-}
-
 RotationAt rotation_at(const Vector3d& turned) {
   const kernel::Quaternion found = kernel::rotation_of(turned);
   return {found.w(), found.vec()};

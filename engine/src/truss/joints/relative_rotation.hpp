@@ -8,6 +8,12 @@
 
 namespace statejump::truss::detail {
 
+/// Rotation vector of a node [rad].
+/// @param site a local site of the joint that is the rotation of a node
+inline Eigen::Vector3d rotation_vector(const Trial& trial, std::size_t site) {
+  return trial.moved[site] / trial.frame.arms[site];
+}
+
 /// A rotation as a quaternion with scalar part w and vector part v. Its rate is a spin on the left:
 /// dv = (w ω + ω × v)/2.
 struct RotationAt {

@@ -114,16 +114,16 @@ Geometry geometry_of(const ClearanceRevolute& joint, const Trial& trial) {
   const Matrix32 plane = plane_of(trial);
   Geometry g{};
   g.eccentricity = plane.transpose() * trial.between(bearing, journal);
-  const auto direction = [&](int link, std::size_t at, std::size_t far) -> Vector2d {
+  const auto direction = [&](std::size_t at, std::size_t far) -> Vector2d {
     if (trial.frame.rotates[far]) {
       const double angle = detail::node_angle(trial, far, joint.axis);
       return {std::cos(angle), std::sin(angle)};
     }
-    if (link < 0) return Vector2d::Zero();
+    if (trial.frame.nodes[far] < 0) return Vector2d::Zero();
     return plane.transpose() * trial.between(far, at);
   };
-  g.journal_direction = direction(joint.journal_link, journal, journal_far);
-  g.bearing_direction = direction(joint.bearing_link, bearing, bearing_far);
+  g.journal_direction = direction(journal, journal_far);
+  g.bearing_direction = direction(bearing, bearing_far);
   const double change = trial.temperature_change;
   const double bore = joint.journal_radius + joint.radial_clearance;
   g.clearance = trial.opening * (joint.radial_clearance + change * joint.clearance_growth());
@@ -262,8 +262,8 @@ Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccent
 
 /// @param motion slide and rotations in the step; zero if the derivative of the slide is not needed
 /// @param bends true if second derivatives are needed
-void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
-                const Memory& start, const Motion& motion, bool bends, Gradients& of) {
+void in_contact(const Trial& trial, const Geometry& g, const Memory& start, const Motion& motion,
+                bool bends, Gradients& of) {
   const double distance = g.eccentricity.norm();
   const Vector2d along = g.eccentricity / distance;
   const Vector2d left = turned_left(along);
@@ -315,11 +315,11 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
       of.bend(node, bearing, -sign * by_distance);
     }
   };
-  if (joint.journal_link >= 0 || trial.frame.rotates[journal_far]) {
+  if (trial.frame.nodes[journal_far] >= 0) {
     turn(journal, journal_far, g.journal_direction, g.journal_radius,
          0.5 * (start.journal_radius + g.journal_radius));
   }
-  if (joint.bearing_link >= 0 || trial.frame.rotates[bearing_far]) {
+  if (trial.frame.nodes[bearing_far] >= 0) {
     turn(bearing, bearing_far, g.bearing_direction, -g.bearing_radius,
          -0.5 * (start.bearing_radius + g.bearing_radius));
   }
@@ -450,7 +450,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     const bool measures =
         trial.model == JointModel::friction && (partial_slip || status == JointStatus::stick);
     const Motion motion = measures ? motion_of(g, start) : Motion{};
-    in_contact(*this, trial, g, start, motion, bends, of);
+    in_contact(trial, g, start, motion, bends, of);
     holds_normal = true;
     const ByNormal depth = contact_of(*this).depth(normal);
     // The opened fraction of the clearance also scales the depth, so that the start proceeds from
@@ -562,10 +562,10 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
     writer.force(at, force);
     writer.force(far, -force);
   };
-  if (journal_link >= 0 || trial.frame.rotates[journal_far]) {
+  if (trial.frame.nodes[journal_far] >= 0) {
     turn(journal, journal_far, g.journal_direction, by_journal);
   }
-  if (bearing_link >= 0 || trial.frame.rotates[bearing_far]) {
+  if (trial.frame.nodes[bearing_far] >= 0) {
     turn(bearing, bearing_far, g.bearing_direction, -by_bearing);
   }
 }

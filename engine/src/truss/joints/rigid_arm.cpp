@@ -4,6 +4,7 @@
 #include "statejump/kernel/require.hpp"
 #include "statejump/kernel/rotation.hpp"
 #include "statejump/truss/model.hpp"
+#include "truss/joints/relative_rotation.hpp"
 #include "truss/joints/writer.hpp"
 #include "truss/parts.hpp"
 
@@ -17,10 +18,6 @@ namespace {
 
 /// Local sites of the joint.
 constexpr std::size_t at_node = 0, at_master = 1, at_rotation = 2;
-
-Vector3d rotation_vector(const Trial& trial) {
-  return trial.moved[at_rotation] / trial.frame.arms[at_rotation];
-}
 
 Vector3d drawn_arm(const Trial& trial) {
   return trial.drawn[at_node] - trial.drawn[at_master];
@@ -115,7 +112,7 @@ std::vector<Constraint> RigidArm::ties(const Model& model) const {
 
 void RigidArm::evaluate(const Trial& trial, JointStatus, JointWriter& writer) const {
   const double scale = 1.0 / trial.frame.arms[at_rotation];
-  const Vector3d turned = rotation_vector(trial);
+  const Vector3d turned = detail::rotation_vector(trial, at_rotation);
   const Vector3d drawn = drawn_arm(trial);
   const kernel::Quaternion rotation = kernel::rotation_of(turned);
   const Vector3d swung = kernel::moved_by(rotation, drawn);

@@ -13,7 +13,6 @@ import numpy as np
 from scipy.linalg import null_space, qr
 
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.elements.beam import rotated_nodes
 from statejump.kinds.truss.joints.rigid import Rigid
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.sections import Node
@@ -41,7 +40,7 @@ def held(case: TrussCase) -> HeldTruss:
     truss = case.resolve()
     if not truss.free:
         return HeldTruss(case, np.zeros((0, 1)))
-    turning = _turning(case)
+    turning = truss.nodes.rotates
     rates = _Rates(truss.nodes.position_m)
     free = _free(truss, rates, turning)
     count = free.shape[1]
@@ -97,14 +96,6 @@ class _Rates:
     def displacements(self) -> np.ndarray:
         """Return the displacements (3 n, 6) of all nodes."""
         return np.vstack([self.at(position) for position in self.positions])
-
-
-def _turning(case: TrussCase) -> np.ndarray:
-    """Return for each node whether it has a rotation."""
-    names = rotated_nodes(case.beam, case.truss.dimension) | {node for hinge in case.hinge for node in hinge.nodes}
-    names |= {body.master for body in case.rigid} | {node for body in case.rigid if body.rotations
-                                                     for node in body.nodes}
-    return np.array([name in names for name in case.resolve().nodes.names])
 
 
 def _free(truss: ResolvedTruss, rates: _Rates, turning: np.ndarray) -> np.ndarray:
