@@ -51,8 +51,9 @@ _PLACES = {
     **dict.fromkeys(("Column", "Event", "Run"), "statejump.core.run"),
     "Kind": "statejump.kinds.protocol",
 }
-_MODULES = {"errors": "statejump.core.errors", "fclib": "statejump.fclib", "kinds": "statejump.kinds",
-            "laws": "statejump.laws", "surface": "statejump.surface", "truss": "statejump.truss"}
+_MODULES = {"body": "statejump.bodies", "errors": "statejump.core.errors", "fclib": "statejump.fclib",
+            "kinds": "statejump.kinds", "laws": "statejump.laws", "surface": "statejump.surface",
+            "truss": "statejump.truss"}
 __all__ = ["__version__", *_PLACES, *_MODULES]
 
 

@@ -32,7 +32,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     )),
     ("simulate", ("statejump.core.yade_process",)),
     ("kinds", (
-        "statejump.kinds", "statejump.laws", "statejump.fclib", "statejump.surface",
+        "statejump.bodies", "statejump.kinds", "statejump.laws", "statejump.fclib", "statejump.surface",
         "statejump.kinds.truss.answers.jumps", "statejump.kinds.truss.answers.reflector",  # outcomes need them
     )),
     ("results", ("statejump.results",)),

@@ -935,6 +935,113 @@ CODES: dict[str, Code] = {
     "problem_no_list": Code(what="{name} has shape {shape}", cause="must be a list of numbers"),
     "problem_not_square": Code(what="W has shape {shape}", cause="must be a square array"),
     "problem_shape": Code(what="W has shape {shape}", cause="q has {entries} entries"),
+    # Condensed bodies
+    "body_arm": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="rotations of node {node!r} are about a point that is {offset_m} m off its position",
+        remedy="give the position of that point, or reduce the model to the node itself",
+    ),
+    "body_axes": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="the axes of the dofs of node {node!r} are rotated against those of node {other!r}",
+        remedy="transform the rows by the displacement coordinate system (Nastran's CD), or give the GRID cards",
+    ),
+    "body_data_missing": Code(what="{data_set} is missing"),
+    "body_data_type": Code(what="{data_set} is damaged", cause="must be {wanted}"),
+    "body_dof_order": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="its rows are in another order: {order}",
+        remedy="order the rows node by node: ux uy uz rx ry rz",
+    ),
+    "body_file_units": Code(what="units = {found!r}", cause="must be 'SI'"),
+    "body_format": Code(what="no condensed body", cause="the attribute format is not {wanted!r}"),
+    "body_freedoms": Code(cause="must be 3 or 6 for each of {nodes_} nodes"),
+    "body_held": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="supports or springs to ground hold the body",
+        remedy="reduce the model without supports (SPC, *BOUNDARY) inside the body",
+    ),
+    "body_indefinite": Code(
+        what="stiffness has a negative eigenvalue, {eigenvalue:.2g} of the largest",
+        cause="signs of some entries are wrong, or the file has too few digits",
+        remedy="write the matrix again with all digits",
+    ),
+    "body_indefinite_rows": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}, and eigenvalues are negative",
+        cause="signs are wrong, or rows and columns are mixed up",
+        remedy="compare the order of rows with the list of dofs",
+    ),
+    "body_load_on_free": Code(
+        what="pattern/load: no free shape",
+        cause="a load acts on a motion that has no stiffness",
+        remedy="give pattern/free_shape",
+    ),
+    "body_load_resultant": Code(
+        what="pattern/load: pattern {pattern!r} has a resultant, relative error {error:.2g}",
+        cause="it is no thermal load of a free body, or its rows are in another order than the stiffness",
+        remedy="give pattern/free_shape",
+    ),
+    "body_loads_and_shapes": Code(beside="with pattern/free_shape", cause="one of them determines the other"),
+    "body_mass_negative": Code(
+        what="mass has a negative eigenvalue, {eigenvalue:.2g} of the largest",
+        cause="it is no mass, or its rows are in another order",
+        remedy="leave the mass out, or write it again",
+    ),
+    "body_mass_not_symmetric": Code(
+        what="mass is not symmetric, relative error {error:.2g}",
+        cause="it has one triangle only, or rows and columns are in different orders",
+    ),
+    "body_mesh": Code(cause="must be indices of 2, 3 or 4 points of mesh/point_m for each cell"),
+    "body_names": Code(cause="must be different texts that are not empty"),
+    "body_negative": Code(
+        what="stiffness has no positive eigenvalue",
+        cause="its sign is reversed",
+        remedy="multiply it by -1",
+    ),
+    "body_not_finite": Code(cause="must hold finite numbers"),
+    "body_not_free": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause=(
+            "rows are in another order, displacement coordinate systems are ignored, units differ, or supports hold "
+            "the body"
+        ),
+        remedy="check rows, GRID cards and units",
+    ),
+    "body_not_numbers": Code(cause="must be an array of numbers"),
+    "body_not_symmetric": Code(
+        what="stiffness is not symmetric, relative error {error:.2g}",
+        cause="rows and columns are in different orders, or the file is damaged",
+    ),
+    "body_patch": Code(cause="must be empty or one of {patches}"),
+    "body_row_order": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="the rows belong to the nodes in another order",
+        remedy="order the nodes as the rows",
+    ),
+    "body_row_order_named": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="the rows of node {node!r} are those of a node at the position of {other!r}",
+        remedy="order the nodes as the rows",
+    ),
+    "body_shape": Code(cause="has the shape {shape}, must have {wanted}"),
+    "body_shapes_missing": Code(cause="{patterns} patterns need free shapes or loads"),
+    "body_sign": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="an axis of node {node!r} has the opposite sign to that of node {other!r}",
+        remedy="use right-handed axes at every node",
+    ),
+    "body_stiffness_shape": Code(cause="has the shape {shape}, must be square with at least {dofs} rows"),
+    "body_triangle": Code(
+        what="stiffness is not symmetric, relative error {error:.2g}",
+        cause="it has one triangle only",
+        remedy="write the whole matrix",
+    ),
+    "body_units": Code(
+        what="stiffness: rigid motions cause forces, relative error {error:.2g}",
+        cause="stiffness and positions have different units ({unit}): positions must be multiplied by {factor:.6g}",
+        remedy="convert both to SI units",
+    ),
+    "body_version": Code(what="version = {found}", cause="this statejump reads version {newest}"),
     # Identification
     "loop_columns_missing": Code(cause="a loop has displacement_m and force_N, or rotation_rad and moment_N_m"),
     "loop_constant": Code(cause="is the same in every row: that is no loop"),

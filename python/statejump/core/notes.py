@@ -196,6 +196,16 @@ NOTES: dict[str, str] = {
         "residuals of neighbouring rows are correlated ({correlation:.2f}): intervals and choice count {rows} rows as "
         "{independent:.0f}; the noise is not independent or the joint is another one"
     ),
+    # Condensed bodies
+    "body_digits": (
+        "stiffness: relative asymmetry {asymmetry:.2g}, relative force of rigid motions {rigid_error:.2g}; both are "
+        "removed"
+    ),
+    "body_large": "the nodes are {radius_m:.4g} m from their centre; check the units",
+    "body_load_digits": "pattern/load: relative resultant {error:.2g}; it is removed",
+    "body_mass_directions": (
+        "mass: it differs between directions, relative difference {error:.2g}; check units and order of rows"
+    ),
     # Campaigns
     "sample_failed": "the run failed: {error}: {text}",
     "worker_ended": "the run ended its worker process, time and again",

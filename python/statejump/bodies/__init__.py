@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Condensed bodies: linear structures of a finite-element model, reduced to their interface nodes.
+
+::
+
+    import statejump as sj
+
+    body = sj.body.read("panel.body.h5")
+    body.measured, body.stiffness, body.free_shapes
+    sj.body.write("mine.body.h5", sj.body.from_arrays(["A", "B"], positions_m, stiffness))
+"""
+from __future__ import annotations
+
+from statejump.bodies.body import CondensedBody, Measured, Mesh, Points, from_arrays
+from statejump.bodies.files import read_body as read, write_body as write
+
+__all__ = ["CondensedBody", "Measured", "Mesh", "Points", "from_arrays", "read", "write"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
