@@ -146,6 +146,28 @@ std::vector<Type> items_of(const Table& table) {
   return items;
 }
 
+/// Condensed bodies: of each its nodes and matrices.
+std::vector<truss::CondensedBody> bodies_of(const py::dict& arrays) {
+  const auto names = arrays["names"].cast<std::vector<std::string>>();
+  const auto nodes = arrays["nodes"].cast<std::vector<std::vector<int>>>();
+  const auto rotating = arrays["rotating"].cast<std::vector<std::vector<bool>>>();
+  const auto stiffness = arrays["stiffness"].cast<std::vector<Eigen::MatrixXd>>();
+  const auto inertia = arrays["mass"].cast<std::vector<Eigen::MatrixXd>>();
+  const auto programs = arrays["programs"].cast<std::vector<std::vector<int>>>();
+  const auto fractions = arrays["temperature_fractions"].cast<std::vector<std::vector<double>>>();
+  const auto shapes = arrays["free_shapes"].cast<std::vector<std::vector<Eigen::VectorXd>>>();
+  std::vector<truss::CondensedBody> made;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    truss::CondensedBody one{names[i],        nodes.at(i),   rotating.at(i),
+                             stiffness.at(i), inertia.at(i), {}};
+    for (std::size_t k = 0; k < programs.at(i).size(); ++k) {
+      one.patterns.push_back({programs[i][k], fractions.at(i).at(k), shapes.at(i).at(k)});
+    }
+    made.push_back(std::move(one));
+  }
+  return made;
+}
+
 std::vector<truss::Constraint> constraints_of(const py::dict& arrays) {
   std::vector<truss::Constraint> made;
   if (!arrays.contains("names")) return made;
@@ -206,8 +228,12 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
   truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
     using Type = truss::ElementType<k>;
     if (!elements_.contains(Type::table)) return;
-    const Table table(Type::table, elements_[Type::table].template cast<py::dict>());
-    std::get<k>(model.lists()) = items_of<Type>(table);
+    const auto arrays = elements_[Type::table].template cast<py::dict>();
+    if constexpr (std::is_same_v<Type, truss::CondensedBody>) {
+      model.bodies = bodies_of(arrays);
+    } else {
+      std::get<k>(model.lists()) = items_of<Type>(Table(Type::table, arrays));
+    }
   });
   truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
     if (joints_.contains(Type::kind)) {
@@ -709,7 +735,7 @@ void bind_types(py::module_& module) {
         py::dict tables;
         truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
           using Type = truss::ElementType<k>;
-          if (Type::parameters().empty()) return;  // no item of a case
+          if (Type::parameters().empty() && Type::outputs().empty()) return;  // no item of a case
           tables[Type::table] = type_dict<Type>();
         });
         return tables;
@@ -775,14 +801,14 @@ void bind_motion(py::module_& module) {
 }
 
 void bind_friction_free(py::module_& module) {
-  module.def("truss_friction_free", friction_free_of, py::arg("nodes"), py::arg("elements"),
-             py::arg("joints"), py::arg("programs"), py::kw_only(),
-             py::arg("constraints") = py::dict(),
-             "Equations about the equilibrium without friction, every friction joint free to slide."
-             "\n\nItems as of truss_path(). Returns sparse matrices of scipy: stiffness_N_per_m, "
-             "guides, slides\n(joints, dofs), heating_N_per_K (dofs, elements), of_nodes; of each "
-             "joint, kind by kind as of\ntruss_joints(): friction_limit_N (NaN: not given), slide_m,"
-             " sticking_stiffness_N_per_m,\nfull_slip_m, radius_m; displacement_m (nodes, 3).");
+  module.def(
+      "truss_friction_free", friction_free_of, py::arg("nodes"), py::arg("elements"),
+      py::arg("joints"), py::arg("programs"), py::kw_only(), py::arg("constraints") = py::dict(),
+      "Equations about the equilibrium without friction, every friction joint free to slide."
+      "\n\nItems as of truss_path(). Returns sparse matrices of scipy: stiffness_N_per_m, "
+      "guides, slides\n(joints, dofs), heating_N_per_K (dofs, elements), of_nodes; of each "
+      "joint, kind by kind as of\ntruss_joints(): friction_limit_N (NaN: not given), slide_m,"
+      " sticking_stiffness_N_per_m,\nfull_slip_m, radius_m; displacement_m (nodes, 3).");
 }
 
 }  // namespace

@@ -257,6 +257,17 @@ void measure_rotations(Model& model) {
     reach(beam.first, std::max(length, beam.offset_first.norm()));
     reach(beam.second, std::max(length, beam.offset_second.norm()));
   }
+  for (const CondensedBody& body : model.bodies) {
+    for (const int node : body.nodes) {
+      for (const int other : body.nodes) {
+        const auto largest = static_cast<std::size_t>(std::max({node, other, 0}));
+        if (largest >= longest.size() || std::min(node, other) < 0) continue;
+        reach(node, (model.nodes[static_cast<std::size_t>(other)].position -
+                     model.nodes[static_cast<std::size_t>(node)].position)
+                        .norm());
+      }
+    }
+  }
   for (std::size_t n = 0; n < longest.size(); ++n) {
     if (longest[n] > 0.0) model.nodes[n].arm = longest[n];
   }

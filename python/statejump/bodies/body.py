@@ -13,9 +13,12 @@ from statejump.bodies.checks import (
     Measured, as_loads, checked_mass, checked_stiffness, free_shapes_of_loads, rigid_motions,
 )
 from statejump.core.errors import NotAllowed
+from statejump.core.later import Later
 from statejump.core.notes import Note
+from statejump.schema.fields import Attached
 
 Matrix = NDArray[np.float64]
+_TO_JSON = Later("statejump.bodies.case_files:to_json")
 
 __all__ = ["PATCHES", "CondensedBody", "Measured", "Mesh", "Points", "from_arrays"]
 
@@ -56,7 +59,7 @@ class Mesh:
 
 
 @attrs.frozen(eq=False)
-class CondensedBody:
+class CondensedBody(Attached):
     """A condensed body. All arrays are in SI units and in one frame, that of the body.
 
     The N dofs are, node by node, ux uy uz and, for a node of six dofs, rx ry rz; then m modes.
@@ -109,6 +112,13 @@ class CondensedBody:
     def rigid_motions(self) -> Matrix:
         """Dofs (N, 6) of unit translations along, and unit rotations about, the axes of the body."""
         return rigid_motions(self.node_positions_m, self.node_freedoms, self.modes)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> CondensedBody:
+        return self
+
+    def to_json(self) -> dict[str, Any]:
+        made: dict[str, Any] = _TO_JSON(self)
+        return made
 
     @property
     def notes(self) -> tuple[Note, ...]:

@@ -8,11 +8,13 @@ from typing import Any
 
 from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
+from statejump.core.later import Later
 from statejump.core.output import check_suffix, check_target, write_atomically
 from statejump.core.tables import write_columns
 from statejump.core.temperature_files import Histories
 from statejump.schema.toml import to_toml
 
+_SAVED_BODIES = Later("statejump.bodies.case_files:save_bodies")
 OF_MEMBERS = ("members", "table_time_s", "table_temperature_change_K")  # keys that members_file replaces
 
 
@@ -30,6 +32,9 @@ def text_of(case: Case) -> str:
     made = document_of(case)
     if made.get("thermal", {}).get("members") is not None:
         raise NotAllowed("thermal.members", code="members_file_not_in_text")
+    for item in made.get("body", ()):
+        if item.get("content") is not None:
+            raise NotAllowed("body.content", code="body_content_not_in_text", item=f"body {item['name']!r}")
     return to_toml(made)
 
 
@@ -54,6 +59,8 @@ def save(case: Case, path: Path) -> Path:
         for key, value in part.items() if isinstance(part, dict) else ():
             if key.endswith("_file") and part is not made.get("thermal"):  # of a mesh, relative to the case
                 part[key] = os.path.relpath(case.origin.folder / value, path.parent)
+    if made.get("body"):
+        made["body"] = _SAVED_BODIES(made["body"], path)
     text = to_toml(made)
     with write_atomically(path) as stream:
         stream.write(text)

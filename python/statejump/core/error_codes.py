@@ -647,6 +647,10 @@ CODES: dict[str, Code] = {
     "bounds_bad_output": Code(cause="must be node:NAME or node:NAME.x, .y, .z with a free direction"),
     "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",
                                   remedy="give node:NAME"),
+    "bounds_body": Code(
+        what="{part}: bounds of condensed bodies are not available yet",
+        cause="their thermal patterns are no temperatures of members",
+    ),
     "bounds_bad_range": Code(cause="must be LOWEST:HIGHEST with LOWEST <= 0 <= HIGHEST [K], for example -80:60"),
     "no_moving_mass": Code(
         what="nothing that moves has a mass", remedy="give links, beams or nodes a density or a mass",
@@ -670,6 +674,17 @@ CODES: dict[str, Code] = {
     "beam_not_positive": Code(cause="must be numbers above 0"),
     "beam_section_missing": Code(cause="shape = 'general' needs it"),
     "beam_walls": Code(cause="{rule}"),
+    "body_axes_parallel": Code(cause="axes x and y of a body must not be parallel"),
+    "body_content_not_in_text": Code(beside="in the text of a case file", remedy="save() writes a file beside it"),
+    "body_file_missing": Code(cause="a condensed body is read from a file that 'statejump body' makes"),
+    "body_node_beside": Code(
+        cause="it is {beside_m:.3g} m beside interface node {interface_!r}; allowed is {allowed_m:.2g} m",
+        remedy="correct position_m, axis_x and axis_y of the body, or the order of nodes",
+    ),
+    "body_node_repeated": Code(cause="must be different nodes"),
+    "body_nodes": Code(cause="must be one node for each of the {count_} interface nodes of the file: {interface_}"),
+    "body_one_each": Code(cause="must have one entry for each of its {count_} patterns"),
+    "body_patterns_missing": Code(cause="the file has several thermal patterns, name those that act: {patterns_}"),
     "coincident_ends": Code(cause="its two ends are at one position"),
     "ball_joint_planar": Code(
         cause="a ball joint needs 3: its friction has two directions; in a planar truss a revolute does the same",
@@ -741,6 +756,11 @@ CODES: dict[str, Code] = {
     "mass_missing": Code(cause="what has weight has one of them"),
     "mass_of_body_missing": Code(cause="{of} is of a body of that mass"),
     "mass_of_moving_link_missing": Code(cause="what moves has one of them"),
+    "mass_of_condensed_body_missing": Code(
+        what="the file of the body has no mass",
+        cause="weights and motion need one",
+        remedy="condense the body with its density",
+    ),
     "mass_of_moving_beam_missing": Code(cause="what moves has one"),
     "mass_of_moving_node_missing": Code(
         cause="the node moves, but no link, spring or constraint gives it a mass or holds it",
@@ -803,6 +823,7 @@ CODES: dict[str, Code] = {
     "node_without_rotation": Code(
         cause="no beam, rigid body or hinge rotates the node; a beam end that releases all moments does not"),
     "planar_axis": Code(cause="in a planar truss it is z"),
+    "planar_body": Code(cause="condensed bodies need 3"),
     "planar_axis_y": Code(cause="in a planar truss y of a section lies in the plane, to the left of its beam"),
     "planar_releases": Code(cause="in a planar truss the ends of a beam release 'Fx' and 'Rz' only"),
     "planar_gradient": Code(cause="in a planar truss the gradient along z of a section must be 0"),

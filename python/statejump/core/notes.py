@@ -72,6 +72,10 @@ NOTES: dict[str, str] = {
     "free_spin": (
         "{named}: free to spin about its own axis, which moves no node and carries no moment; held by a soft spring"
     ),
+    "body_bends": (
+        "body {body!r} bends by {angle_rad:.2g} rad against its frame; a linear body neglects the shortening of "
+        "{strain:.2g} (angle squared over 24), {share:.2g} times its largest thermal strain: divide the body"
+    ),
     "several_reactions": (
         "{named}: constrain a displacement more than once {at}; the reactions are one solution of many, the "
         "displacements are unique"

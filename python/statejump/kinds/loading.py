@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from statejump import _paths
+from statejump.bodies.case_files import with_bodies
 from statejump.core.case import Case, CaseHeader, Origin
 from statejump.core.errors import located
 from statejump.core.item_files import with_tables
@@ -52,6 +53,7 @@ def parse_case(
     with located(file=file):
         of_kind = kind(_kind_name(data))
         data = with_keys_moved(of_kind.Case, data, str(file or ""))
+        data = with_bodies(data, files_from)
         if files_from is not None:
             data = with_files(data, files_from, section_of(fields_of(of_kind.Case)["thermal"]))
             data = with_tables(data, files_from, of_kind.Case)

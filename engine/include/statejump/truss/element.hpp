@@ -9,6 +9,7 @@
 
 #include "statejump/truss/elements/bar.hpp"
 #include "statejump/truss/elements/beam.hpp"
+#include "statejump/truss/elements/condensed_body.hpp"
 #include "statejump/truss/elements/spin_spring.hpp"
 #include "statejump/truss/elements/spring.hpp"
 #include "statejump/truss/elements/torsion_spring.hpp"
@@ -22,12 +23,14 @@ struct Elements {
   std::vector<Spring> springs;
   std::vector<TorsionSpring> torsion_springs;
   std::vector<Beam> beams;
+  std::vector<CondensedBody> bodies;
   std::vector<SpinSpring> spin_springs;
 
   /// References to the lists, as a tuple.
   template <class Self>
   static auto lists_of(Self& self) {
-    return std::tie(self.links, self.springs, self.torsion_springs, self.beams, self.spin_springs);
+    return std::tie(self.links, self.springs, self.torsion_springs, self.beams, self.bodies,
+                    self.spin_springs);
   }
   auto lists() { return lists_of(*this); }
   auto lists() const { return lists_of(*this); }

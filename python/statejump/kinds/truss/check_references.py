@@ -15,6 +15,7 @@ from statejump.kinds.truss.arrays import having, said
 from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.beam import BEAM
+from statejump.kinds.truss.elements.body import BODY
 from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
@@ -80,6 +81,9 @@ def _programs(case: TrussSections) -> None:
     def unknown(key: str, items: ItemColumns[Any]) -> np.ndarray:
         return places.of(items, key) == UNKNOWN
 
+    for body in case.body:
+        for name in body.programs or ():
+            known_name("programs", body.programs, name, programs, "program", **BODY.where(body.name))
     for key, items, where in followers:
         for item in where_wrong(items, partial(unknown, key)):
             name = getattr(item, key)

@@ -53,7 +53,8 @@ def _rotations(case: TrussSections) -> None:
     dimension = case.truss.dimension
     rotating = rotating_nodes(case)
     # A support may prevent a rotation that no beam transmits; a moment there would have no effect.
-    ends = {"fixed_rotations": rotating | {name for beam in case.beam for name in beam.nodes}, "moment_N_m": rotating}
+    touched = {name for beam in case.beam for name in beam.nodes} | {name for body in case.body for name in body.nodes}
+    ends = {"fixed_rotations": rotating | touched, "moment_N_m": rotating}
 
     def wrong(nodes: ItemColumns[Node]) -> np.ndarray:
         given = said(nodes, "moment_N_m")

@@ -23,8 +23,20 @@ def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
         mass[ends] += share
     beams = truss.elements["beam"].nodes
     np.add.at(mass, beams, 0.5 * beam_mass_kg(truss)[:, None])
+    mass += condensed_mass_kg(truss)
     mass[held] = 0
     return mass
+
+
+def condensed_mass_kg(truss: ResolvedTruss) -> np.ndarray:
+    """Return the mass of condensed bodies at every node [kg], in equal shares for all interface nodes.
+
+    :raises MissingKey: the file of a body has no mass
+    """
+    bodies, found = truss.elements["body"], np.zeros(len(truss.nodes.names))
+    for nodes, mass in zip(bodies.nodes, bodies.mass_kg):
+        np.add.at(found, nodes, mass / len(nodes))
+    return found
 
 
 def beam_mass_kg(truss: ResolvedTruss) -> np.ndarray:
@@ -57,8 +69,8 @@ def require_masses(truss: ResolvedTruss) -> None:
     """
     has = truss.nodes.mass_kg > 0
     bodies, hinges = truss.joints["rigid"], truss.joints["hinge"]
-    for nodes in (truss.links.nodes, truss.springs.nodes, truss.elements["beam"].nodes, *truss.constraints.nodes,
-                  bodies.master, bodies.node, hinges.nodes):
+    for nodes in (truss.links.nodes, truss.springs.nodes, truss.elements["beam"].nodes, *truss.elements["body"].nodes,
+                  *truss.constraints.nodes,                  bodies.master, bodies.node, hinges.nodes):
         has[nodes[nodes >= 0]] = True
     for index in np.flatnonzero(~has & ~blocked_directions(truss)[:, :truss.dimension].all(axis=1))[:1]:
         raise MissingKey("mass_kg", code="mass_of_moving_node_missing", section=f"mass_kg of node "

@@ -18,7 +18,9 @@ from statejump.core.progress import OnProgress
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import refuse_beams
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.masses import beam_mass_kg, beam_moment_kg_m2, lumped_mass_kg, require_masses
+from statejump.kinds.truss.masses import (
+    beam_mass_kg, beam_moment_kg_m2, condensed_mass_kg, lumped_mass_kg, require_masses,
+)
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvents, engine_items
 
@@ -110,7 +112,7 @@ def inertia(case: TrussCase) -> dict[str, Any]:
     ratio, is_lumped = case.dem_settings.link_damping_ratio, case.motion.masses == "lumped"
     return {
         "link_mass_kg": np.zeros(len(links.names)) if is_lumped else links.mass_kg,
-        "node_mass_kg": lumped if is_lumped else truss.nodes.mass_kg,
+        "node_mass_kg": lumped - condensed_mass_kg(truss) if is_lumped else truss.nodes.mass_kg,
         "link_centre": truss.bodies.centre,
         "link_moment_kg_m2": np.zeros(len(links.names)) if is_lumped else truss.bodies.moment_kg_m2,
         "link_damping_N_s_per_m": dashpots_N_s_per_m(links.nodes, axial, ratio, lumped),

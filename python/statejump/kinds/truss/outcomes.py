@@ -42,7 +42,8 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
         )
     if case.has_jump:
         values.update(largest_node_jump_m=float(jumps.max()), rms_node_jump_m=float(np.sqrt(np.mean(jumps**2))))
-    bending = [element.tension_N(found.states) for element in ELEMENTS if element.bends]
+    bending = [element.tension_N(truss.elements[element.section], found.states)
+               for element in ELEMENTS if element.bends]
     axial_forces = [found.states["axial_force_N"], *bending]
     values.update(
         friction_dissipation_J=float(heat.sum()),

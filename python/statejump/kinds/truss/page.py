@@ -370,7 +370,8 @@ class TrussPart:
         size = float(np.ptp(start, axis=0).max())
         largest = float(self._size_m.max())
         truss = self.case.resolve()
-        elements = [("link" if one.bends else "spring", truss.elements[one.section].names) for one in ELEMENTS]
+        elements = [("link" if one.bends else "spring", one.names_of_ends(truss.elements[one.section]))
+                    for one in ELEMENTS]
         between = [("link", truss.links.names), *elements]
         lines = [{"nodes": [int(node) for node in nodes], "kind": kind, "name": name}
                  for (kind, names), ends in zip(between, truss.ends()) for name, nodes in zip(names, ends)]

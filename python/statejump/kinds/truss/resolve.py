@@ -45,9 +45,11 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     elements = {element.section: element.resolve(element.listed(case), known) for element in ELEMENTS}
     if gravity.any():
         weights = weights_N(gravity, links.nodes, links.mass_kg, bodies, nodes.mass_kg)
+        moments = np.zeros_like(weights)
         for element in ELEMENTS:
             weights += element.weights_N(elements[element.section], gravity, len(positions))
-        nodes = replace(nodes, force_N=nodes.force_N + weights)
+            moments += element.weight_moments_N_m(elements[element.section], gravity, len(positions))
+        nodes = replace(nodes, force_N=nodes.force_N + weights, moment_N_m=nodes.moment_N_m + moments)
 
     reflector = None
     if case.reflector is not None:
@@ -90,7 +92,7 @@ def _nodes(case: TrussSections, positions: np.ndarray) -> Nodes:
 def _rotations(case: TrussSections) -> dict[str, np.ndarray]:
     """Return supports of rotations and moments of the nodes."""
     count = len(case.node)
-    if not (case.beam or case.rigid or case.hinge):
+    if not (case.beam or case.body or case.rigid or case.hinge):
         none = np.broadcast_to(0.0, (count, 3))
         return {"fixed_rotations": none != 0, "moment_N_m": none, "rotates": none[:, 0] != 0}
     clamped = np.stack([having(case.node, "fixed_rotations", axis) for axis in "xyz"], axis=1)

@@ -97,7 +97,7 @@ class PullsNodes(Protocol):
     def stiffness_N_per_m(self, elements: Any) -> np.ndarray:
         """Return the largest stiffness (k,) [N/m] between the two nodes of each element."""
 
-    def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
+    def tension_N(self, elements: Any, states: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the tension (states, k) [N] between the ends."""
 
 
@@ -176,7 +176,8 @@ class ResolvedTruss:
 
     def tensions_N(self, states: Mapping[str, np.ndarray]) -> list[np.ndarray]:
         """Return the tensions (states, k) [N] of links and of the elements of each type, ordered as :meth:`ends`."""
-        return [-states["axial_force_N"], *(element.tension_N(states) for element in self.element_types)]
+        of_elements = (element.tension_N(self.elements[element.section], states) for element in self.element_types)
+        return [-states["axial_force_N"], *of_elements]
 
     def with_joints(self, **changed: Any) -> ResolvedTruss:
         """Return the truss with other joints in the named sections."""

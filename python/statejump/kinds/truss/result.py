@@ -92,15 +92,19 @@ def scene(case: TrussCase) -> dict[str, Any]:
     ]
     for element in ELEMENTS:
         elements = truss.elements[element.section]
-        if element.bends:
+        if element.has_section:
             # Their columns are not those of links.
             parts += [{**drawing.link(f"{element.section} {name}", [nodes[end] for end in ends],
                                       _Section(elements, place)), "values": {}}
                       for place, (name, ends) in enumerate(zip(elements.names, element.ends(elements)))]
             continue
-        for name, ends, stiffness in zip(elements.names, element.ends(elements), element.stiffness_N_per_m(elements)):
-            parts.append({"name": f"{element.section} {name}", "type": "spring", "ends": [nodes[end] for end in ends],
-                          "stiffness_N_per_m": float(stiffness)})
+        seen: dict[str, int] = {}
+        for name, ends, stiffness in zip(element.names_of_ends(elements), element.ends(elements),
+                                         element.stiffness_N_per_m(elements)):
+            seen[name] = seen.get(name, 0) + 1
+            number = f" {seen[name]}" if seen[name] > 1 else ""
+            parts.append({"name": f"{element.section} {name}{number}", "type": "spring",
+                          "ends": [nodes[end] for end in ends], "stiffness_N_per_m": float(stiffness)})
     labels, taken = joint_names(truss), {part["name"] for part in parts}
     contacts, clearances = [], [np.zeros(0)]
     for joint in JOINTS:
@@ -162,7 +166,14 @@ def _run(
     return Run(model, history, energy, links, contacts, Events(happened),
                {**_jumps(case, *(dense or (time, items["displacement_m"]))), **summary}, names(case), lambda: case,
                warnings=(*case.thermal_notes, *case.implausible, *plausibility.axial_strains(
-                   truss.links.names, items["axial_force_N"], truss.links.axial_stiffness_N), *warnings), **more)
+                   truss.links.names, items["axial_force_N"], truss.links.axial_stiffness_N),
+                   *_of_elements(truss, items), *warnings), **more)
+
+
+def _of_elements(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
+    """Return what the element types note about a run."""
+    return tuple(note for element in ELEMENTS if truss.elements[element.section].names
+                 for note in element.run_notes(truss, truss.elements[element.section], items))
 
 
 def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> dict[str, float]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from statejump.kinds.truss.elements.beam import rotated_nodes
+from statejump.kinds.truss.elements.body import rotated_by_bodies
 from statejump.kinds.truss.sections import TrussSections
 
 
 def rotating_nodes(case: TrussSections) -> set[str]:
-    """Return the names of the nodes that beams, rigid bodies or hinges rotate."""
+    """Return the names of the nodes that beams, condensed or rigid bodies, or hinges rotate."""
     found = {name for hinge in case.hinge for name in hinge.nodes} | {rigid.master for rigid in case.rigid}
     found |= {name for rigid in case.rigid if rigid.rotations for name in rigid.nodes}
-    return found | rotated_nodes(case.beam, case.truss.dimension)
+    return found | rotated_nodes(case.beam, case.truss.dimension) | rotated_by_bodies(case.body)

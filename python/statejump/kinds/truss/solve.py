@@ -137,7 +137,8 @@ def _elements(truss: ResolvedTruss, table: str) -> dict[str, Any]:
     """Return the elements of a type as arrays for the engine."""
     keys = dict.fromkeys(parameter["key"] for parameter in _engine.truss_elements()[table]["parameters"])
     parts = {"links": truss.links} | {element.items: truss.elements[element.section] for element in ELEMENTS}
-    return _table(parts[table], *keys)
+    own = {element.items: element.engine_arrays(truss.elements[element.section]) for element in ELEMENTS}
+    return _table(parts[table], *keys, **own.get(table, {}))
 
 
 def engine_items(truss: ResolvedTruss) -> dict[str, Any]:

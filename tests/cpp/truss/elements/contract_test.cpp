@@ -273,6 +273,7 @@ TYPED_TEST(ElementContract, ForcesTurnWithTheStructure) {
   for (Node& node : turned.nodes) node.position = turn * node.position;
   for (TypeParam& one : std::get<TestFixture::type>(turned.lists())) {
     if constexpr (std::is_same_v<TypeParam, SpinSpring>) one.axis = turn * one.axis;
+    if constexpr (std::is_same_v<TypeParam, CondensedBody>) testing::turn_axes(one, turn);
     for (const Parameter<TypeParam>& parameter : TypeParam::parameters()) {
       if (const auto* direction = std::get_if<Vector3d TypeParam::*>(&parameter.member)) {
         one.*(*direction) = turn * one.*(*direction);

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "../parts.hpp"
 #include "statejump/truss/motion.hpp"
@@ -123,6 +126,75 @@ inline Model sample(std::type_identity<Beam>) {
   return model;
 }
 
+/// Bodies: one with rotations of some nodes and two thermal patterns, one with translations only,
+/// and a bar. Their stiffness is that of random springs between points that move with the nodes, so
+/// rigid motions cause no force.
+inline Model sample(std::type_identity<CondensedBody>) {
+  Model model = four_nodes();
+  for (std::size_t n = 1; n < 4; ++n) {
+    model.nodes[n].rotations = 3 - static_cast<int>(n);
+    model.nodes[n].rotation_directions = model.nodes[1].free_directions;
+  }
+  const auto body = [&](const char* name, std::vector<bool> rotating) {
+    CondensedBody made{name, {0, 1, 2, 3}, std::move(rotating), {}, {}, {}};
+    std::vector<Eigen::Index> rows{0};
+    for (const bool rotates : made.rotating) rows.push_back(rows.back() + (rotates ? 6 : 3));
+    const Eigen::Index freedoms = rows.back();
+    made.stiffness = Eigen::MatrixXd::Zero(freedoms, freedoms);
+    // Each spring connects points fixed to two nodes.
+    double number = 0.3;
+    const auto next = [&] { return number = std::fmod(7.13 * number + 0.4137, 1.0); };
+    for (int k = 0; k < 60; ++k) {
+      const auto a = static_cast<std::size_t>(k % 4);
+      const auto b = (a + 1 + static_cast<std::size_t>(k / 4 % 3)) % 4;
+      Eigen::Vector3d arm_a(next() - 0.5, next() - 0.5, next() - 0.5);
+      Eigen::Vector3d arm_b(next() - 0.5, next() - 0.5, next() - 0.5);
+      if (!made.rotating[a]) arm_a.setZero();
+      if (!made.rotating[b]) arm_b.setZero();
+      const Eigen::Vector3d along =
+          (model.nodes[b].position + arm_b - model.nodes[a].position - arm_a).normalized();
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(freedoms);
+      row.segment<3>(rows[a]) -= along;
+      row.segment<3>(rows[b]) += along;
+      if (made.rotating[a]) row.segment<3>(rows[a] + 3) -= arm_a.cross(along);
+      if (made.rotating[b]) row.segment<3>(rows[b] + 3) += arm_b.cross(along);
+      made.stiffness += 1e4 * (0.5 + next()) * row * row.transpose();
+    }
+    for (const double scale : {2e-5, -1e-5}) {
+      Eigen::VectorXd shape(freedoms);
+      for (Eigen::Index i = 0; i < freedoms; ++i) shape[i] = scale * (next() - 0.5);
+      made.patterns.push_back({static_cast<int>(made.patterns.size()), 0.7, shape});
+    }
+    return made;
+  };
+  model.bodies = {body("mixed", {true, true, false, true}),
+                  body("translations", {false, false, false, false})};
+  // A bar: its frame may roll.
+  CondensedBody bar{"bar", {0, 2}, {false, false}, {}, {}, {}};
+  const Eigen::Vector3d along = (model.nodes[2].position - model.nodes[0].position).normalized();
+  Eigen::VectorXd row(6);
+  row << -along, along;
+  bar.stiffness = 1e4 * row * row.transpose();
+  bar.patterns = {{0, 1.0, 1e-5 * row}};
+  model.bodies.push_back(bar);
+  measure_rotations(model);
+  return model;
+}
+
+/// Rotates the axes of a body's matrices.
+inline void turn_axes(CondensedBody& body, const Eigen::Matrix3d& turn) {
+  const auto turn_rows = [&](auto&& rows) {
+    for (Eigen::Index row = 0; row < rows.rows(); row += 3) {
+      rows.template middleRows<3>(row) = (turn * rows.template middleRows<3>(row)).eval();
+    }
+  };
+  turn_rows(body.stiffness);
+  Eigen::MatrixXd transposed = body.stiffness.transpose();
+  turn_rows(transposed);
+  body.stiffness = transposed;
+  for (ThermalPattern& pattern : body.patterns) turn_rows(pattern.free_shape);
+}
+
 /// Masses and moments of inertia for the elements of the samples.
 inline Inertia sample_inertia() {
   Inertia made;
@@ -144,6 +216,9 @@ inline double sample_mass(std::type_identity<TorsionSpring>) {
   return 0.0;
 }
 inline double sample_mass(std::type_identity<Beam>) {
+  return 0.0;
+}
+inline double sample_mass(std::type_identity<CondensedBody>) {
   return 0.0;
 }
 inline double sample_mass(std::type_identity<SpinSpring>) {

@@ -70,7 +70,8 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
         at = {key: values[frame] for key, values in states.items()}
         arrays: dict[str, dict[int, Any]] = {
             "axial_force_N": {LINK: at["axial_force_N"], **{
-                kind: -element.tension_N(at) for kind, element in enumerate(BETWEEN_NODES, 1)}},
+                kind: -element.tension_N(own, at)
+                for kind, (element, own) in enumerate(zip(BETWEEN_NODES, elements), 1)}},
             "temperature_change_K": {LINK: temperatures[frame]},
         }
         for kind, joint in enumerate(JOINTS, FIRST_JOINT):

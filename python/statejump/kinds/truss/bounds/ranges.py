@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.errors import NotAllowed
+from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.start import FRICTIONLESS
 from statejump.kinds.truss.bounds.programs import Polytope
 from statejump.kinds.truss.bounds.sliding import Sliding
@@ -72,6 +72,8 @@ class Temperatures:
 def _programs(of: Sliding) -> tuple[np.ndarray, np.ndarray]:
     """Return the program (-1: none) and the fraction of its ΔT of every element."""
     truss, count = of.truss, of.heating_N_per_K.shape[1]
+    for name in truss.elements["body"].names:
+        raise StatejumpError(code="bounds_body", part=f"body {name!r}")
     numbers, fractions = np.full(count, -1), np.ones(count)
     beams = truss.elements["beam"]
     for start, part in ((0, truss.links), (count - len(beams.names), beams)):

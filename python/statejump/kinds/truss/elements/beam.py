@@ -194,6 +194,7 @@ class BeamType(BetweenNodes[Beam, Beams]):
     )
     not_in_dem = "bends, the DEM has no beams yet"
     bends = True
+    has_section = True
     has_temperature = True
 
     def check_vectors(self, item: Beam, dimension: int) -> None:
@@ -312,7 +313,7 @@ class BeamType(BetweenNodes[Beam, Beams]):
     def preload_N(self, elements: Beams) -> np.ndarray:
         return np.zeros(len(elements.names))
 
-    def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
+    def tension_N(self, elements: Beams, states: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.asarray(states["beam_force_second_N"][..., 0])
 
     def lines(self, elements: Beams) -> list[Lines]:

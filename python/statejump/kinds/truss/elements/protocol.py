@@ -52,6 +52,7 @@ class ElementType(PartType[ItemType, ArraysType]):
 
     listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
     bends: ClassVar[bool] = False  # it rotates its nodes; models without rotations refuse it
+    has_section: ClassVar[bool] = False  # drawings show its items with a cross section
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
 
     # ---------------------------------------------------------------- case
@@ -76,25 +77,43 @@ class ElementType(PartType[ItemType, ArraysType]):
         """Return the pairs of nodes (k, 2) that the elements connect; empty (0, 2) for elements that act on angles."""
         return np.zeros((0, 2), dtype=int)
 
+    def names_of_ends(self, elements: ArraysType) -> Sequence[str]:
+        """Return the name of the element of each pair of :meth:`ends`."""
+        found: Sequence[str] = cast(Any, elements).names
+        return found if len(self.ends(elements)) else ()
+
     def stiffness_N_per_m(self, elements: ArraysType) -> np.ndarray:
-        """Return the largest stiffness (k,) [N/m] between the two nodes of each element."""
+        """Return the largest stiffness (k,) [N/m] between the two nodes of each pair of :meth:`ends`."""
         return np.zeros(0)
+
+    def engine_arrays(self, elements: ArraysType) -> dict[str, Any]:
+        """Return the arrays for the engine that are not fields of the type's arrays."""
+        return {}
 
     def weights_N(self, elements: ArraysType, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
         """Return the weights of the elements as loads on the nodes (nodes, 3) [N]."""
+        return np.zeros((nodes, 3))
+
+    def weight_moments_N_m(self, elements: ArraysType, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
+        """Return the moments of the weights on the nodes (nodes, 3) [N m]."""
         return np.zeros((nodes, 3))
 
     def preload_N(self, elements: ArraysType) -> np.ndarray:
         """Return the forces (k,) [N] in the reference configuration."""
         return np.zeros(0)
 
-    def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the tension (states, k) [N] of each element between its ends, from the columns of the type."""
-        return np.zeros((len(states["time_s"]), 0))
+    def tension_N(self, elements: ArraysType, states: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the tension (states, k) [N] of each pair of :meth:`ends`, from the columns of the type."""
+        return np.zeros((len(states["time_s"]), len(self.ends(elements))))
 
     def switches(self, elements: ArraysType, columns: Mapping[str, np.ndarray]) -> list[Switch]:
         """Return the elements whose switching on or off is an event, from the columns of the type."""
         return []
+
+    def run_notes(self, truss: ResolvedTruss, elements: ArraysType, columns: Mapping[str, np.ndarray]
+                  ) -> tuple[str, ...]:
+        """Return sentences about the limits of the type that a run approaches."""
+        return ()
 
     def changed(self, truss: ResolvedTruss, elements: ArraysType) -> ArraysType:
         """Return the elements with updated dependent arrays, after a change of one of the ``varied`` numbers."""

@@ -80,7 +80,7 @@ class SpringType(BetweenNodes[Spring, Springs]):
     def preload_N(self, elements: Springs) -> np.ndarray:
         return elements.preload_N
 
-    def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
+    def tension_N(self, elements: Springs, states: Mapping[str, np.ndarray]) -> np.ndarray:
         return states["tension_N"]
 
     def switches(self, elements: Springs, columns: Mapping[str, np.ndarray]) -> list[Switch]:

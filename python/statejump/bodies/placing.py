@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A condensed body at its place in a structure: its matrices in the axes of the structure."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from statejump.bodies.body import CondensedBody
+from statejump.bodies.checks import rigid_motions, scales
+from statejump.core.errors import NotAllowed
+
+Matrix = NDArray[np.float64]
+# Sine of the smallest angle between axes x and y that determine the third: below, their digits do not suffice.
+LEAST_SINE = 1e-6
+
+
+@frozen(eq=False, slots=False)
+class Placed:
+    """A condensed body in the axes of a structure, without its modes: fixed-interface modes have no static answer.
+
+    :param positions_m: of its interface nodes (n, 3) in the structure [m]
+    :param freedoms: dofs (n) of each node: 3 or 6
+    :param offset_m: position of the structure's node minus that of the interface node (n, 3) [m]
+    :param axes: rotation (3, 3) from the axes of the body to those of the structure
+    :param stiffness: (N, N); rigid motions about the structure's nodes cause no force
+    :param free_shapes: dofs (p, N) per kelvin of each pattern
+    :param mass: (N, N); None: unknown
+    """
+
+    positions_m: Matrix
+    freedoms: NDArray[np.int64]
+    offset_m: Matrix
+    axes: Matrix
+    stiffness: Matrix
+    free_shapes: Matrix
+    mass: Matrix | None
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """First dof of each node."""
+        return np.concatenate([[0], np.cumsum(self.freedoms)[:-1]]).astype(np.int64)
+
+    @cached_property
+    def largest_stiffness_N_per_m(self) -> float:
+        """Largest stiffness of a displacement [N/m]."""
+        at = (self.starts[:, None] + np.arange(3)).ravel()
+        return float(np.diag(self.stiffness)[at].max())
+
+    @property
+    def mass_kg(self) -> float:
+        """Mass [kg]. The file must contain one."""
+        assert self.mass is not None
+        along = self._translation(np.array([1.0, 0.0, 0.0]))
+        return float(along @ self.mass @ along)
+
+    def weight(self, gravity_m_per_s2: Matrix) -> tuple[Matrix, Matrix]:
+        """Return forces (n, 3) [N] and moments (n, 3) [N m] of gravity on the nodes. The file must contain a mass."""
+        assert self.mass is not None
+        loads = self.mass @ self._translation(gravity_m_per_s2)
+        forces, moments = np.zeros((len(self.freedoms), 3)), np.zeros((len(self.freedoms), 3))
+        for index, (start, dofs) in enumerate(zip(self.starts, self.freedoms)):
+            forces[index] = loads[start:start + 3]
+            if dofs == 6:
+                moments[index] = loads[start + 3:start + 6]
+        return forces, moments
+
+    def _translation(self, direction: Matrix) -> Matrix:
+        motion = np.zeros(int(self.freedoms.sum()))
+        for start in self.starts:
+            motion[start:start + 3] = direction
+        return motion
+
+
+def axes_of(axis_x: Sequence[float] | None, axis_y: Sequence[float] | None, **where: Any) -> Matrix:
+    """Return the rotation (3, 3) from the axes of a body to those of the structure.
+
+    :param axis_x: direction of the body's axis x in the structure
+    :param axis_y: direction of its axis y, of which the part across x counts
+    :raises NotAllowed: an axis is zero, or both are parallel
+    """
+    first = np.array([1.0, 0.0, 0.0] if axis_x is None else axis_x, dtype=float)
+    second = np.array([0.0, 1.0, 0.0] if axis_y is None else axis_y, dtype=float)
+    for key, axis in (("axis_x", first), ("axis_y", second)):
+        if not axis.any():
+            raise NotAllowed(key, axis.tolist(), code="direction_zero", **where)
+    first, second = first / np.linalg.norm(first), second / np.linalg.norm(second)
+    third = np.cross(first, second)
+    if np.linalg.norm(third) < LEAST_SINE:
+        raise NotAllowed("axis_y" if axis_y is not None else "axis_x", (axis_y or axis_x), code="body_axes_parallel",
+                         **where)
+    third /= np.linalg.norm(third)
+    return np.column_stack((first, np.cross(third, first), third))
+
+
+def placed(body: CondensedBody, nodes_m: Matrix, origin_m: Matrix, axes: Matrix) -> Placed:
+    """Return a body at its place.
+
+    :param nodes_m: positions (n, 3) of the structure's nodes [m]
+    :param origin_m: position (3,) of the body's origin [m]
+    :param axes: see :func:`axes_of`
+    """
+    freedoms, count = body.node_freedoms, body.interface_dofs
+    turn = np.zeros((count, count))
+    for start in range(0, count, 3):
+        turn[start:start + 3, start:start + 3] = axes
+    own = _condensed(body.stiffness, count)
+    stiffness = _without_rigid_forces(turn @ own @ turn.T, nodes_m, freedoms)
+    positions = origin_m + body.node_positions_m @ axes.T
+    return Placed(
+        positions_m=positions, freedoms=freedoms, offset_m=nodes_m - positions, axes=axes, stiffness=stiffness,
+        free_shapes=body.free_shapes[:, :count] @ turn.T,
+        mass=None if body.mass is None else turn @ body.mass[:count, :count] @ turn.T)
+
+
+def _condensed(matrix: Matrix, count: int) -> Matrix:
+    """Return the stiffness of the interface with modes that follow it. Fixed-interface modes have no coupling."""
+    coupling = matrix[:count, count:]
+    if not coupling.any():
+        return matrix[:count, :count]
+    return np.asarray(matrix[:count, :count] - coupling @ np.linalg.solve(matrix[count:, count:], coupling.T))
+
+
+def _without_rigid_forces(stiffness: Matrix, nodes_m: Matrix, freedoms: NDArray[np.int64]) -> Matrix:
+    """Return the symmetric stiffness with the rigid motions about the structure's nodes projected out."""
+    scale = scales(nodes_m, freedoms, stiffness)
+    motions = rigid_motions(nodes_m, freedoms, about_m=nodes_m.mean(axis=0)) / scale[:, None]
+    sizes = np.linalg.norm(motions, axis=0)
+    left, size_of, _ = np.linalg.svd(motions[:, sizes > 0] / sizes[sizes > 0], full_matrices=False)
+    basis = left[:, size_of > 1e-9 * size_of.max()]
+    scaled = stiffness * np.outer(scale, scale)
+    for _ in range(2):  # the second time against the rounding of the first
+        scaled = scaled - basis @ (basis.T @ scaled)
+        scaled = scaled - (scaled @ basis) @ basis.T
+    return np.asarray(0.5 * (scaled + scaled.T) / np.outer(scale, scale))
