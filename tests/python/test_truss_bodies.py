@@ -14,6 +14,7 @@ from body_parts import (
 )
 
 import statejump as sj
+from statejump.bodies.body import Points
 from statejump.bodies.files import write_body
 from statejump.core.errors import StatejumpError
 
@@ -218,3 +219,46 @@ def test_weight_of_a_body(tmp_path: Path) -> None:
     with pytest.raises(StatejumpError) as refused:
         cantilever(tmp_path, None, **gravity)
     assert refused.value.code == "mass_of_condensed_body_missing"
+
+
+def panel_case(turn: np.ndarray, hidden: bool) -> Any:
+    """Return the left bracket with its corner as a point of the body or, not hidden, as an interface node."""
+    names, kept = (("foot", "tip"), (0, 2)) if hidden else (("foot", "corner", "tip"), (0, 1, 2))
+    positions = BRACKET @ turn.T
+    body = frame_body(positions, [(0, 1, turn @ Y), (1, 2, turn @ Z)], kept, names, turn)
+    if hidden:
+        body = attrs.evolve(body, points=corner_point(turn))
+    nodes = [{"name": name, "position_m": positions[place].tolist()} for name, place in zip(names, kept)]
+    nodes[0] |= {"fixed": ["x", "y", "z"], "fixed_rotations": ["x", "y", "z"]}
+    nodes[-1] |= {"force_N": (turn @ [3.0, 20.0, -10.0]).tolist()}
+    return sj.load({
+        "case": {"name": "panel", "kind": "truss"}, "truss": {"dimension": 3}, "node": nodes,
+        "body": [{"name": "P", "nodes": list(names), "content": body, "axis_x": turn[:, 0].tolist(),
+                  "axis_y": turn[:, 1].tolist()}],
+        "reflector": {"axis": [0.0, 0.0, 1.0], **(
+            {"nodes": ["tip"], "points": ["P/corner"]} if hidden else {"nodes": ["corner", "tip"]})},
+        "thermal": {"shape": "triangle", "temperature_change_max_K": 60.0, "cycles": 1, "period_s": 1.0}})
+
+
+def corner_point(turn: np.ndarray) -> Points:
+    """Return the recovery of the corner of the bracket, in the axes of the body."""
+    whole = frame_body(BRACKET, [(0, 1, Y), (1, 2, Z)], (0, 1, 2), ("foot", "corner", "tip"))
+    kept = np.r_[0:6, 12:18]
+    rows = -np.linalg.solve(whole.stiffness[6:12, 6:12], whole.stiffness[6:12][:, kept])[:3]
+    shapes = whole.free_shapes
+    patterns = shapes[:, 6:9] - shapes[:, kept] @ rows.T
+    return Points(("corner",), BRACKET[1:2], rows, patterns)
+
+
+def test_points_move_as_interface_nodes() -> None:
+    turn = rotation(0.9)
+    hidden, shown = panel_case(turn, True).reduced(), panel_case(turn, False).reduced()
+    found = hidden.history["point_displacement_m"].values[:, 0]
+    expected = shown.history["displacement_m"].values[:, 1]
+    # The frames of both bodies differ by their rotations, 1e-4, whose square changes positions of 0.2 m.
+    assert np.abs(found - expected).max() <= 4 * 0.2 * (2e-4) ** 2
+    assert np.abs(expected).max() > 1e-4
+    with pytest.raises(StatejumpError) as refused:
+        data = panel_case(turn, True).origin.document
+        sj.load({**data, "reflector": {**data["reflector"], "points": ["P/edge"]}})
+    assert refused.value.code == "undefined_reference"

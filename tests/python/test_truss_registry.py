@@ -78,7 +78,8 @@ def test_arrays_are_those_of_the_engine(kind: AnyType) -> None:
     assert {parameter["key"] for parameter in engine_type(kind)["parameters"]} <= set(given)
     fields = {field.name for field in dataclasses.fields(kind.Arrays)} - {"names"}
     # Each node of a [[rigid]] is a joint of its own, with its master and with the rotations that its own one holds.
-    derived = {"master", "node", "holds"} if kind.section == "rigid" else {"rigid"}
+    # A [[body]] has the matrices of its content at its place.
+    derived = {"rigid": {"master", "node", "holds"}, "body": {"contents", "placed"}}.get(kind.section, {"rigid"})
     assert fields - set(fields_of(kind.Item)) <= derived, "a key of its items has another name"
 
 

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from statejump.bodies.body import CondensedBody
+from statejump.bodies.body import CondensedBody, Points
 from statejump.bodies.checks import rigid_motions, scales
 from statejump.core.errors import NotAllowed
 
@@ -26,6 +27,7 @@ class Placed:
     :param positions_m: of its interface nodes (n, 3) in the structure [m]
     :param freedoms: dofs (n) of each node: 3 or 6
     :param offset_m: position of the structure's node minus that of the interface node (n, 3) [m]
+    :param origin_m: position (3,) of the body's origin [m]
     :param axes: rotation (3, 3) from the axes of the body to those of the structure
     :param stiffness: (N, N); rigid motions about the structure's nodes cause no force
     :param free_shapes: dofs (p, N) per kelvin of each pattern
@@ -35,6 +37,7 @@ class Placed:
     positions_m: Matrix
     freedoms: NDArray[np.int64]
     offset_m: Matrix
+    origin_m: Matrix
     axes: Matrix
     stiffness: Matrix
     free_shapes: Matrix
@@ -69,6 +72,46 @@ class Placed:
                 moments[index] = loads[start + 3:start + 6]
         return forces, moments
 
+    def positions_of(self, points_m: Matrix) -> Matrix:
+        """Return positions (k, 3) in the structure of points (k, 3) in the frame of the body [m]."""
+        return np.asarray(self.origin_m + points_m @ self.axes.T)
+
+    def moved_points(self, points: Points, displacement_m: Matrix, rotation_rad: Matrix, heat_K: Matrix) -> Matrix:
+        """Return the displacements (states, k, 3) of points in the structure [m].
+
+        :param displacement_m: of the interface nodes (states, n, 3) [m]
+        :param rotation_rad: rotation vectors of the interface nodes (states, n, 3)
+        :param heat_K: temperature (states, p) of every pattern of the file
+        """
+        nodes_m = self.positions_m + self.offset_m
+        drawn = nodes_m - nodes_m.mean(axis=0)
+        moved = displacement_m - displacement_m.mean(axis=1, keepdims=True)
+        six = self.freedoms == 6
+        turns = Rotation.from_rotvec(rotation_rad[:, six].reshape(-1, 3)).as_matrix().reshape(len(moved), -1, 3, 3)
+        squared = float((drawn**2).sum(axis=1).mean()) or 1.0
+        sums = np.einsum("sni,nj->sij", drawn + moved, drawn) + squared * turns.sum(axis=1)
+        left, _, right = np.linalg.svd(sums)
+        left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
+        frame = left @ right
+        # Rotation minus identity times a vector, without a difference of two positions.
+        change = frame - np.eye(3)
+        q = np.zeros((len(moved), int(self.freedoms.sum())))
+        shapes = np.einsum("sji,snj->sni", frame, moved) + np.einsum("sji,nj->sni", change, drawn)
+        relative = np.einsum("sji,snjk->snik", frame, turns).reshape(-1, 3, 3)
+        angles = Rotation.from_matrix(relative).as_rotvec().reshape(len(moved), -1, 3)
+        for place, start in enumerate(self.starts):
+            q[:, start:start + 3] = shapes[:, place]
+        for place, start in enumerate(self.starts[six]):
+            q[:, start + 3:start + 6] = angles[:, place]
+        # Rows are in the axes of the body.
+        own = q.reshape(len(moved), -1, 3) @ self.axes
+        count = len(points.names)
+        flexible = own.reshape(len(moved), -1) @ points.rows[:, :q.shape[1]].T + heat_K @ points.patterns
+        inside = flexible.reshape(len(moved), count, 3) @ self.axes.T
+        arms = self.positions_of(points.positions_m) - nodes_m.mean(axis=0)
+        centre = displacement_m.mean(axis=1, keepdims=True)
+        return np.asarray(centre + np.einsum("sij,skj->ski", frame, inside) + np.einsum("sij,kj->ski", change, arms))
+
     def _translation(self, direction: Matrix) -> Matrix:
         motion = np.zeros(int(self.freedoms.sum()))
         for start in self.starts:
@@ -87,7 +130,7 @@ def axes_of(axis_x: Sequence[float] | None, axis_y: Sequence[float] | None, **wh
     second = np.array([0.0, 1.0, 0.0] if axis_y is None else axis_y, dtype=float)
     for key, axis in (("axis_x", first), ("axis_y", second)):
         if not axis.any():
-            raise NotAllowed(key, axis.tolist(), code="direction_zero", **where)
+            raise NotAllowed(key, axis.tolist(), code="zero_vector", **where)
     first, second = first / np.linalg.norm(first), second / np.linalg.norm(second)
     third = np.cross(first, second)
     if np.linalg.norm(third) < LEAST_SINE:
@@ -112,8 +155,8 @@ def placed(body: CondensedBody, nodes_m: Matrix, origin_m: Matrix, axes: Matrix)
     stiffness = _without_rigid_forces(turn @ own @ turn.T, nodes_m, freedoms)
     positions = origin_m + body.node_positions_m @ axes.T
     return Placed(
-        positions_m=positions, freedoms=freedoms, offset_m=nodes_m - positions, axes=axes, stiffness=stiffness,
-        free_shapes=body.free_shapes[:, :count] @ turn.T,
+        positions_m=positions, freedoms=freedoms, offset_m=nodes_m - positions, origin_m=origin_m, axes=axes,
+        stiffness=stiffness, free_shapes=body.free_shapes[:, :count] @ turn.T,
         mass=None if body.mass is None else turn @ body.mass[:count, :count] @ turn.T)
 
 

@@ -31,7 +31,8 @@ def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
     :raises StatejumpError: the run is not that of a truss with a [reflector]
     """
     design, nodes = reflector_of(run.definition)
-    moved = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
+    places = [np.asarray(run.history[key].values) for key in ("position_m", "point_position_m") if key in run.history]
+    moved = np.concatenate(places, axis=1)[:, nodes] - design.position_m
     check_measure(measure)
     residual, moves = design.best_fits(moved, measure)
     best = moves["rigid_focal"]

@@ -15,7 +15,7 @@ from statejump.kinds.truss.arrays import having, said
 from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.beam import BEAM
-from statejump.kinds.truss.elements.body import BODY
+from statejump.kinds.truss.elements.body import BODY, names_of_points
 from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
@@ -49,10 +49,13 @@ def check_references(case: TrussSections) -> None:
     check_constraints(case, nodes)
     check_mechanism.check(case, links)
     if case.reflector is not None:
-        if not case.reflector.nodes:
+        if not case.reflector.nodes and not case.reflector.points:
             raise NotAllowed("reflector.nodes", [], code="no_nodes")
         for place in np.flatnonzero(node_places.called(case.reflector.nodes) == UNKNOWN):
             known_name("reflector.nodes", ABSENT, case.reflector.nodes[place], nodes, "node", beside="as it is")
+        points = dict.fromkeys(name for body in case.body for name in names_of_points(body))
+        for point in case.reflector.points:
+            known_name("reflector.points", case.reflector.points, point, points, "point of a body")
 
 
 def _held(case: TrussSections) -> np.ndarray:

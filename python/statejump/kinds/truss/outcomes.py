@@ -8,6 +8,7 @@ import numpy as np
 from statejump.core.run import Run
 from statejump.kinds import of
 from statejump.kinds.truss.answers import reflector
+from statejump.kinds.truss.body_points import displacements_m
 from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
@@ -33,7 +34,8 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
     values = dict.fromkeys(of(case).OUTCOMES, float("nan"))
     surface = reflector.surface(truss) if case.has_jump else None
     if surface is not None:
-        start, end = (surface.fit(ends["displacement_m"][index]) for index in (0, -1))
+        moved = displacements_m(truss, ends)
+        start, end = (surface.fit(moved[index]) for index in (0, -1))
         values.update(
             reflector_rms_of_change_m=float(np.sqrt(np.mean((end.residual_m - start.residual_m) ** 2))),
             reflector_rms_error_m=end.rms_error_m,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from statejump.core.errors import StatejumpError, located
+from statejump.kinds.truss.body_points import positions_m
 from statejump.kinds.truss.case import TrussCase
 from statejump.surface.design import Design
 
@@ -19,4 +20,4 @@ def surface(case: TrussCase) -> tuple[Design, np.ndarray]:
         raise StatejumpError(code="reflector_missing", file=case.origin.file)
     nodes = np.asarray(truss.reflector.nodes)
     with located(file=case.origin.file):
-        return Design.of(truss.nodes.position_m[nodes], truss.reflector.axis, truss.reflector.focal_length_m), nodes
+        return Design.of(positions_m(truss)[nodes], truss.reflector.axis, truss.reflector.focal_length_m), nodes

@@ -15,6 +15,7 @@ from statejump.kinds.truss.arrays import (
 )
 from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.body import points_called
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
@@ -54,7 +55,9 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     reflector = None
     if case.reflector is not None:
         reflector = ReflectorSurface(
-            nodes=node_places.called(case.reflector.nodes),
+            nodes=np.concatenate((
+                node_places.called(case.reflector.nodes).astype(int),
+                len(positions) + np.array(points_called(case.body, case.reflector.points), dtype=int))),
             axis=unit(in_space(case.reflector.axis, dimension)),
             focal_length_m=case.reflector.focal_length_m,
         )

@@ -80,7 +80,7 @@ class Links:
 class ReflectorSurface:
     """Nodes of the reflecting surface."""
 
-    nodes: np.ndarray  # int
+    nodes: np.ndarray  # int; points of bodies come after all nodes
     axis: np.ndarray  # (3,) unit
     focal_length_m: float | None  # None: best fit
 

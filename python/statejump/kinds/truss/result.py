@@ -17,6 +17,7 @@ from statejump.core.run import (
 from statejump.core.start import carried
 from statejump.core.units import unit_of
 from statejump.kinds.truss import compare, notes
+from statejump.kinds.truss.body_points import displacements_m, point_names, positions_m
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import ElementType
@@ -36,6 +37,7 @@ TYPES: tuple[ElementType[Any, Any] | JointType[Any, Any], ...] = (*ELEMENTS, *JO
 # Columns by item: list of the items, and whether values are vectors. Names and order are those of the DEM's samples.
 ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False)} | {
     column.name: (kind.items, column.vector) for kind in TYPES for column in kind.columns}
+ROTATIONS = ("rotation_rad",)  # columns of cases with nodes that rotate
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
 # Types whose states the DEM samples. Types with contacts have states in the contacts of a result.
 STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
@@ -79,6 +81,7 @@ def names(case: TrussCase) -> dict[str, list[str]]:
     of |= {joint.items: list(truss.joints[joint.section].names) for joint in JOINTS
            if joint.has_contacts or truss.joints[joint.section].names}
     of |= {"drives": list(truss.drives.names)} if truss.drives.names else {}
+    of |= {"points": point_names(truss)} if point_names(truss) else {}
     return {**of, "contacts": _joints(truss)}
 
 
@@ -149,6 +152,11 @@ def _run(
             history[key] = Column(items[key], unit_of(key), of, note=NOTES.get(key, ""))
     position = truss.nodes.position_m + items["displacement_m"]
     history["position_m"] = Column(position, "m", "nodes")
+    if point_names(truss):
+        points = slice(len(truss.nodes.names), None)
+        moved = displacements_m(truss, {**items, "time_s": time})[:, points]
+        history["point_displacement_m"] = Column(moved, "m", "points", note="from the drawn shape")
+        history["point_position_m"] = Column(positions_m(truss)[points] + moved, "m", "points")
 
     expansion = truss.links.thermal_expansion_per_K * _changes(truss, time, truss.links)
     along = position[:, truss.links.nodes[:, 1]] - position[:, truss.links.nodes[:, 0]]
@@ -294,6 +302,7 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     ending = np.clip(np.searchsorted(at, times_s, side="left"), 0, len(at) - 1)
     items = {key: sampled(states[key]) for key in ITEMS}
     items |= {key: values[ending] for key, values in _states(states).items()}
+    items |= {key: sampled(states[key]) for key in ROTATIONS if key in states}
     heat = heat_of_joints_J(states).sum(axis=1)
     plain, energy = columns_of({
         "time_s": times_s,
@@ -337,7 +346,7 @@ def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
 def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
     """Return the motion of a case as a run of the reduced model, at the times of the DEM's samples."""
     states = motion.states
-    items = {key: states[key] for key in ITEMS} | _states(states)
+    items = {key: states[key] for key in (*ITEMS, *ROTATIONS) if key in states} | _states(states)
     of_joints = _heat(states)
     plain, energy = columns_of({
         **{key: states[key] for key in (

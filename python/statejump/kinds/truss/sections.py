@@ -192,7 +192,8 @@ class TrussDem(Section):
 class Reflector(Section):
     """The nodes of a reflecting surface: its error is that against the best-fit paraboloid."""
 
-    nodes: list[str] = texts(..., "nodes of the surface")
+    nodes: list[str] = texts([], "nodes of the surface")
+    points: list[str] = texts([], "points of condensed bodies on it: BODY/POINT, or BODY for all its points")
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of the paraboloid; of any length")
     focal_length_m: float | None = parameter(None, "m", 0, LARGEST_LENGTH_M, "best fit", above=True)
 

@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.optimize import least_squares
 
+from statejump.kinds.truss.body_points import positions_m
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Parameters of a fit with columns scaled to length 1 are undetermined if their singular value is below this.
@@ -45,7 +46,7 @@ class Surface:
     notes: tuple[str, ...]
 
     def fit(self, displacement_m: np.ndarray) -> Fit:
-        """Return the best-fit paraboloid for displacements (n, 3) of all nodes of the truss."""
+        """Return the best-fit paraboloid for displacements (n, 3) of all nodes, and points of bodies."""
         points = self.drawn_m + displacement_m[self.nodes] @ self.frame.T
         found = _fit(points, self.free, self.held)
         values = {**self.held, **dict(zip(self.free, found.x))}
@@ -143,7 +144,7 @@ def surface(truss: ResolvedTruss) -> Surface | None:
     start = np.eye(3)[np.argsort(np.abs(reflector.axis[:dimension]), kind="stable")[:lateral]]
     basis = np.linalg.qr(np.vstack((reflector.axis, start)).T)[0].T
     frame = np.vstack((basis[1:dimension], reflector.axis))
-    positions = truss.nodes.position_m[reflector.nodes]
+    positions = positions_m(truss)[reflector.nodes]
     origin = positions.mean(axis=0)
     drawn = (positions - origin) @ frame.T
     parameters = _parameters(drawn.tobytes(), dimension, reflector.focal_length_m)

@@ -247,6 +247,25 @@ def _patterns(item: Body, content: CondensedBody) -> np.ndarray:
     return np.array([content.pattern_names.index(name) for name in names], dtype=int)
 
 
+def names_of_points(item: Body) -> list[str]:
+    """Return what names the points of a body in a case: the body for all of them, then BODY/POINT of each."""
+    points = item.content.points if item.content is not None else None
+    return [] if points is None else [item.name, *(f"{item.name}/{point}" for point in points.names)]
+
+
+def points_called(items: Sequence[Body], called: Sequence[str]) -> list[int]:
+    """Return the indices of named points among the points of all bodies; :func:`names_of_points` has the names."""
+    places: dict[str, list[int]] = {}
+    count = 0
+    for item in items:
+        names = names_of_points(item)
+        if names:
+            places[names[0]] = list(range(count, count + len(names) - 1))
+            places |= {name: [count + place] for place, name in enumerate(names[1:])}
+            count += len(names) - 1
+    return [place for name in called for place in places[name]]
+
+
 def rotated_by_bodies(items: Sequence[Body]) -> set[str]:
     """Return the names of the nodes that condensed bodies rotate."""
     found = set()
