@@ -10,6 +10,7 @@
 #include "statejump/truss/joints/interface.hpp"
 #include "statejump/truss/joints/iwan_joint.hpp"
 #include "statejump/truss/joints/latch_hinge.hpp"
+#include "statejump/truss/joints/pad.hpp"
 #include "statejump/truss/joints/revolute.hpp"
 #include "statejump/truss/joints/rigid_arm.hpp"
 #include "statejump/truss/joints/slider.hpp"
@@ -21,7 +22,8 @@ template <JointType... Types>
 using JointOf = std::variant<Types...>;
 
 /// The registry of joints. To add a type, change this list only.
-using Joint = JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint, RigidArm, Hinge>;
+using Joint =
+    JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint, RigidArm, Hinge, Pad>;
 
 inline const std::string& name_of(const Joint& joint) {
   return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);

@@ -129,4 +129,20 @@ inline JointSample sample(std::type_identity<Hinge>) {
   return two_links(one);
 }
 
+inline JointSample sample(std::type_identity<Pad>) {
+  Pad one;
+  one.name = std::string("joint");
+  one.first = 3;
+  one.second = 1;
+  one.normal = Eigen::Vector3d(2.0, -1.0, 2.0) / 3.0;
+  one.clearance = 1e-4;
+  one.normal_stiffness = 1e6;
+  one.tangential_stiffness = 8e5;
+  one.friction_coefficient = 0.3;
+  JointSample made = two_links(one);
+  made.statuses = {JointStatus::stick, JointStatus::slip_plus};
+  made.touching = -1.01e-4 * one.normal;
+  return made;
+}
+
 }  // namespace statejump::truss::testing

@@ -8,6 +8,7 @@ from statejump.kinds.truss.joints.ball_joint import BALL_JOINT, BallJoint
 from statejump.kinds.truss.joints.hinge import HINGE, Hinge
 from statejump.kinds.truss.joints.iwan_joint import IWAN_JOINT, IwanJoint
 from statejump.kinds.truss.joints.latch_hinge import LATCH_HINGE, LatchHinge
+from statejump.kinds.truss.joints.pad import PAD, Pad
 from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.joints.revolute import REVOLUTE, Revolute
 from statejump.kinds.truss.joints.rigid import RIGID, Rigid
@@ -15,7 +16,7 @@ from statejump.kinds.truss.joints.slider import SLIDER, Slider
 from statejump.schema.fields import Section, definition, tables
 
 # In the order of results. To add a type, add it to this tuple and to the lists.
-JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_JOINT, BALL_JOINT, RIGID, HINGE)
+JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_JOINT, BALL_JOINT, RIGID, HINGE, PAD)
 
 
 @definition
@@ -31,3 +32,4 @@ class JointLists(Section):
     ball_joint: list[BallJoint] = tables(BallJoint, "sections [[ball_joint]]")
     rigid: list[Rigid] = tables(Rigid, "sections [[rigid]]")
     hinge: list[Hinge] = tables(Hinge, "sections [[hinge]]")
+    pad: list[Pad] = tables(Pad, "sections [[pad]]")
