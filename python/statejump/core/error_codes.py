@@ -1042,6 +1042,45 @@ CODES: dict[str, Code] = {
         remedy="convert both to SI units",
     ),
     "body_version": Code(what="version = {found}", cause="this statejump reads version {newest}"),
+    "matrix_entry_twice": Code(what="matrix {matrix}: two different entries at row {row}, column {column}"),
+    "matrix_file_damaged": Code(what="cannot be read", cause="{form} is damaged, or the file is of another kind"),
+    "matrix_held": Code(
+        what="a support holds node {node}",
+        cause="the diagonal of a held dof is 1e36",
+        remedy="write the matrix of the model without *BOUNDARY",
+    ),
+    "matrix_inner_nodes": Code(
+        what="node {node} is an internal node of Abaqus",
+        cause="the matrix is that of the whole model, with Lagrange multipliers",
+        remedy="write a substructure (*SUBSTRUCTURE MATRIX OUTPUT)",
+    ),
+    "matrix_labels_count": Code(
+        what="the stiffness has {rows} rows, the files list {labels} dofs",
+        remedy="give the .asm or .pch file of the same run",
+    ),
+    "matrix_load_columns": Code(cause="it has {columns} columns for {names} pattern names"),
+    "matrix_missing": Code(
+        what="no stiffness",
+        cause="the files have the matrices {known}",
+        remedy="name the stiffness",
+    ),
+    "matrix_node_missing": Code(
+        what="node {node} has no position",
+        remedy="give a file with GRID cards, *NODE, or a table name,x_m,y_m,z_m",
+    ),
+    "matrix_of_calculix": Code(
+        what="a matrix of CalculiX's *SUBSTRUCTURE GENERATE",
+        cause="CalculiX writes the stiffness of the held interior there, not the reduced one",
+        remedy="condense the deck with 'statejump body condense'",
+    ),
+    "matrix_other_kind": Code(what="a matrix of kind {kind}", cause="must be a stiffness or a mass"),
+    "matrix_other_rows": Code(what="matrix {matrix}: its {rows} rows are not those of the stiffness"),
+    "matrix_unknown": Code(cause="must be one of {known}"),
+    "matrix_without_labels": Code(
+        what="the {rows} rows of the stiffness have no node numbers",
+        remedy="give a file with EXTRN or ASET cards, or nodes with equally many dofs",
+    ),
+    "matrix_without_nodes": Code(what="the stiffness has no dofs of nodes"),
     # Identification
     "loop_columns_missing": Code(cause="a loop has displacement_m and force_N, or rotation_rad and moment_N_m"),
     "loop_constant": Code(cause="is the same in every row: that is no loop"),
