@@ -38,14 +38,37 @@ def cause_of(stiffness: Matrix, names: Sequence[str], positions_m: Matrix, freed
         order = _interleaved(inner, positions_m, int(freedoms[0]))
         if order:
             return "body_dof_order", {"order": order}
-    motions = (vectors / scale[:, None])[:, :6]
-    if len(values) > 6 and abs(values[5]) * GAP > values[6]:
-        return "body_not_free", {}
-    if (freedoms == 6).all():
-        return _by_nodes(motions, names, positions_m)
-    if len(names) <= MOST_ORDERS and _permuted(inner, positions_m, freedoms):
+    found = _of_motions(inner, names, positions_m, freedoms)
+    if found:
+        return found
+    if len(names) <= MOST_ORDERS and (freedoms == 3).all() and _permuted(inner, positions_m, freedoms):
         return "body_row_order", {}
     return "body_not_free", {}
+
+
+def _of_motions(stiffness: Matrix, names: Sequence[str], positions_m: Matrix, freedoms: NDArray[np.int64]
+                ) -> tuple[str, dict[str, Any]] | None:
+    """Return the cause that motions without force show; None: there are more or less than six, or they show nothing."""
+    used = np.abs(stiffness).max(axis=1) > 1e-12 * np.abs(stiffness).max()
+    starts = np.concatenate([[0], np.cumsum(freedoms)]).tolist()
+    dofs = [int(used[start:end].sum()) for start, end in zip(starts, starts[1:])]
+    whole = all(used[start:start + count].all() for start, count in zip(starts, dofs))
+    if not whole or not set(dofs) <= {3, 6} or 6 not in dofs:
+        return None
+    kept = np.flatnonzero(used)
+    inner = stiffness[np.ix_(kept, kept)]
+    scale = np.sqrt(np.abs(np.diag(inner)))
+    values, vectors = np.linalg.eigh(inner / np.outer(scale, scale))
+    if len(values) > 6 and abs(values[5]) * GAP > values[6]:
+        return None
+    motions = (vectors / scale[:, None])[:, :6]
+    at = np.concatenate([[0], np.cumsum(dofs)]).tolist()
+    base = dofs.index(6)
+    first = motions[at[base]:at[base] + 6]
+    if np.linalg.cond(first) > 1e12:
+        return None
+    relative = motions @ np.linalg.inv(first)
+    return _by_nodes(np.stack([relative[start:start + 3] for start in at[:-1]]), names, positions_m, base)
 
 
 def _is_free(stiffness: Matrix, positions_m: Matrix, freedoms: Sequence[int]) -> bool:
@@ -84,31 +107,30 @@ def _permuted(stiffness: Matrix, positions_m: Matrix, freedoms: NDArray[np.int64
     return False
 
 
-def _by_nodes(motions: Matrix, names: Sequence[str], positions_m: Matrix) -> tuple[str, dict[str, Any]]:
-    """Return the cause for nodes of six dofs, from motions without force relative to the first node."""
-    first = motions[:6]
-    if np.linalg.cond(first) > 1e12:
-        return "body_not_free", {}
-    relative = (motions @ np.linalg.inv(first)).reshape(-1, 6, 6)
-    turns = relative[:, :3, :3]
+def _by_nodes(relative: Matrix, names: Sequence[str], positions_m: Matrix, base: int
+              ) -> tuple[str, dict[str, Any]] | None:
+    """Return the cause from the translations (n, 3, 6) of all nodes per unit motion of the node ``base``."""
+    turns = relative[:, :, :3]
     if np.abs(turns @ np.swapaxes(turns, 1, 2) - np.eye(3)).max() > ALIKE:
-        return "body_not_free", {}
-    turned = [name for name, turn in zip(names, turns) if np.abs(turn - np.eye(3)).max() > ALIKE]
-    if turned:
-        if len(turned) > len(names) / 2 and len(names) > 2 and \
-                np.abs(turns[1:] - turns[1]).max() <= ALIKE:
-            turned, others = [names[0]], names[1]  # the first node is the one that differs
+        return None
+    groups: list[list[int]] = []  # nodes with equal axes
+    for node, turn in enumerate(turns):
+        group = next((one for one in groups if np.abs(turn - turns[one[0]]).max() <= ALIKE), None)
+        if group is None:
+            groups.append([node])
         else:
-            others = names[0]
+            group.append(node)
+    if len(groups) > 1:
+        groups.sort(key=lambda group: (-len(group), base not in group, group))
         mirrored = bool((np.linalg.det(turns) < 0).any())
-        return "body_sign" if mirrored else "body_axes", {"node": turned[0], "other": others}
-    arm = relative[:, :3, 3:]
+        return "body_sign" if mirrored else "body_axes", {"node": names[groups[1][0]], "other": names[groups[0][0]]}
+    arm = relative[:, :, 3:]
     arms = np.stack([arm[:, 1, 2], arm[:, 2, 0], arm[:, 0, 1]], axis=1)
-    return _of_arms(arms, names, positions_m)
+    return _of_arms(arms, names, positions_m, base)
 
 
-def _of_arms(arms: Matrix, names: Sequence[str], positions_m: Matrix) -> tuple[str, dict[str, Any]]:
-    given = positions_m - positions_m[0]
+def _of_arms(arms: Matrix, names: Sequence[str], positions_m: Matrix, base: int) -> tuple[str, dict[str, Any]]:
+    given = positions_m - positions_m[base]
     size = max(float(np.abs(given).max(initial=0.0)), 1e-300)
     spread = float(np.abs(arms).max(initial=0.0))
     factor = float((arms * given).sum() / max((given**2).sum(), 1e-300))

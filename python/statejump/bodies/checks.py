@@ -210,8 +210,8 @@ def checked_mass(
     scaled = (scaled + scaled.T) / 2
     values = np.linalg.eigvalsh(scaled)
     if values[0] < -max(NOTED, 10 * asymmetry) * max(values[-1], 0.0) or values[-1] < 0:
-        negative = float(values[0] / values[-1]) if values[-1] > 0 else -1.0
-        raise StatejumpError(code="body_mass_negative", eigenvalue=negative)
+        raise StatejumpError(code="body_mass_negative",
+                             eigenvalue=float(values[0] / values[-1] if values[-1] > 0 else -1.0))
     kept = scaled / np.outer(scale, scale)
     moved = rigid_motions(positions_m, freedoms, len(given) - int(freedoms.sum()))[:, :3]
     block = moved.T @ kept @ moved

@@ -74,7 +74,7 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
                 raise deck.fail(number, "deck_bad_syntax", problem="a CEND without BEGIN BULK")
     control = [] if begin is None else lines[:begin]
     return ([(number, text) for number, line in control if (text := line.split("$")[0].strip())],
-            _cards(deck, lines[0 if begin is None else begin + 1:]))
+            cards_of(deck, lines[0 if begin is None else begin + 1:]))
 
 
 def _included(deck: Deck, source: Source, lines: list[str], place: int) -> tuple[str, int] | None:
@@ -89,7 +89,7 @@ def _included(deck: Deck, source: Source, lines: list[str], place: int) -> tuple
     return None
 
 
-def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
+def cards_of(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
     """Return the cards. A continuation belongs to the card with the matching mark, else to the previous card."""
     cards: list[Card] = []
     marks = _Marks()
