@@ -7,7 +7,7 @@
 
 A frame is an ordinary structure (``structures.py``) whose bars are tubes with rigid connections. Half of the tubes have
 a thermal gradient. Bars that have keys of links only stay bars. The nodes of tubes turn the parts of revolutes and
-balls. Prints a table of the outcomes by family. Frames whose joints lose contact are not changed: statics determines
+balls. Some feet rest on pads. Prints a table of the outcomes by family. Frames whose joints lose contact are not changed: statics determines
 neither the position of slack parts nor the jump that they leave.
 """
 from __future__ import annotations
@@ -60,11 +60,38 @@ def frame(document: Document, rng: np.random.Generator) -> Document:
         if rng.random() < 0.5:
             beam["gradient_per_m"] = [float(rng.uniform(-GRADIENT, GRADIENT) / (2 * radius)), 0.0]
         made["beam"].append(beam)
+    set_on_pads(made, rng)
     bent = {beam["name"] for beam in made["beam"]}
     for joint in (joint for section in CLEARANCE for joint in made.get(section, [])):
         for key in [key for key, value in joint.items() if key.endswith("_link") and value in bent]:
             del joint[key]
     return made | ({"link": kept} if kept else {})
+
+
+def set_on_pads(made: Document, rng: np.random.Generator) -> None:
+    """Put some of the feet that slide on ground on pads: a force presses the foot on its plane, which its support was
+    before."""
+    nodes = {node["name"]: node for node in made["node"]}
+    dimension, kept = made["truss"]["dimension"], []
+    for slider in made.get("slider", []):
+        foot = nodes[slider["nodes"][0]]
+        across = [axis for axis in foot.get("fixed", []) if not slider["axis"]["xyz".index(axis)]]
+        stops = {"clearance_minus_m", "clearance_plus_m", "stop_stiffness_N_per_m", "play_m"} & set(slider)
+        if len(slider["nodes"]) > 1 or not across or stops or rng.random() < 0.5:
+            kept.append(slider)
+            continue
+        normal = np.eye(dimension)["xyz".index(across[0])]
+        foot["fixed"] = [axis for axis in foot["fixed"] if axis != across[0]]
+        foot["force_N"] = (foot.get("force_N", 0 * normal) - slider["normal_force_N"] * normal).tolist()
+        # It sinks by a millionth of its size under its force.
+        size = max(np.ptp([node["position_m"] for node in made["node"]], axis=0))
+        made.setdefault("pad", []).append({
+            "name": slider["name"], "nodes": slider["nodes"], "normal": normal.tolist(),
+            "friction_coefficient": slider["friction_coefficient"],
+            "normal_stiffness_N_per_m": max(slider["normal_force_N"], 1.0) / (1e-6 * float(size))})
+    made["slider"] = kept
+    if not kept:
+        del made["slider"]
 
 
 def frames(count: int, seed: int, families: list[str] | None = None, most_nodes: int = 60

@@ -13,7 +13,8 @@ import numpy as np
 from sketch import CLEARANCE, Document
 
 Random = np.random.Generator
-SECTIONS = ("node", "link", "beam", "spring", "torsion_spring", "slider", "iwan_joint", "latch_hinge", *CLEARANCE)
+SECTIONS = ("node", "link", "beam", "spring", "torsion_spring", "slider", "iwan_joint", "latch_hinge", "pad",
+            *CLEARANCE)
 # Keys that hold names of other items.
 NODES = ("nodes", "bearing_node", "journal_node", "socket_node", "ball_node")
 LINKS = ("links", "bearing_link", "journal_link", "socket_link", "ball_link")
@@ -26,11 +27,11 @@ UNITS = {
     "clearance_plus_m": (1, 0), "tangent_stiffness_N_per_m": (-1, 1), "slip_force_N": (0, 1),
     "journal_radius_m": (1, 0), "ball_radius_m": (1, 0), "radial_clearance_m": (1, 0), "friction_moment_N_m": (1, 1),
     "friction_stiffness_N_m_per_rad": (1, 1), "preload_moment_N_m": (1, 1), "mass_kg": (0, 1),
-    "dimensions_m": (1, 0), "gradient_per_m": (-1, 0),
+    "dimensions_m": (1, 0), "gradient_per_m": (-1, 0), "normal_stiffness_N_per_m": (-1, 1), "clearance_m": (1, 0),
 }
 CONTACT_MODULUS_PA = 70e9  # default of joints with contacts
 VECTORS = {"node": ("position_m", "force_N", "guide_normal"), "slider": ("axis",), "beam": ("axis_y",),
-           "iwan_joint": ("axis",)}
+           "iwan_joint": ("axis",), "pad": ("normal",)}
 AXIAL = ("revolute", "torsion_spring", "latch_hinge")  # axes about which something turns
 
 

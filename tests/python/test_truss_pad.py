@@ -72,10 +72,10 @@ def test_residual_slide_is_that_of_friction(dimension: int) -> None:
 
 
 def test_rotated_and_in_any_direction() -> None:
-    here = displacement_m(pad_case(way=0.4))
-    there = displacement_m(pad_case(turn(1.3), way=0.4))
+    here = displacement_m(pad_case(way=0.4, normal_stiffness_N_per_m=1e8))
+    there = displacement_m(pad_case(turn(1.3), way=0.4, normal_stiffness_N_per_m=1e8))
     assert np.abs(here @ turn(1.3).T - there).max() <= 1e-9 * np.abs(here).max()
-    along = displacement_m(pad_case())
+    along = displacement_m(pad_case(normal_stiffness_N_per_m=1e8))
     assert np.abs(np.linalg.norm(here, axis=1) - np.linalg.norm(along, axis=1)).max() <= 1e-9 * np.abs(along).max()
 
 
@@ -113,14 +113,14 @@ def test_energy_balances_while_the_direction_of_slip_turns() -> None:
     run = sj.load({**data, "link": links, "program": [late], "thermal": thermal}).reduced()
     heat = run.energy["friction_dissipation_J"].values
     assert heat[-1] > 0 and (np.diff(heat) >= -1e-12 * heat[-1]).all()
-    # The direction of slip is first-order accurate in the increments, of which 50 a branch are taken.
-    assert abs(run.summary["energy_residue_J"]) <= 1e-2 * heat[-1]
+    # The balance closes to second order in the 50 increments of a branch.
+    assert abs(run.summary["energy_residue_J"]) <= 50**-2 * heat[-1]
 
 
 @pytest.mark.parametrize(("keys", "code"), [
     ({"normal": [0.0, 0.0, 0.0]}, "zero_vector"),
     ({"normal": [0.0, 1.0]}, "wrong_dimension"),
-    ({"nodes": ["B", "B"]}, "same_node_twice"),
+    ({"nodes": ["B", "B"]}, "equal_nodes"),
     ({"nodes": ["X"]}, "undefined_reference"),
     ({"friction_coefficient": -0.1}, "out_of_range"),
 ])

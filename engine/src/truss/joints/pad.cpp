@@ -50,15 +50,16 @@ struct State {
 State state_of(const Pad& pad, const Trial& trial) {
   State made;
   made.moved = trial.frame.axes.transpose() * (trial.moved[node] - trial.moved[plane]);
-  made.friction = {trial.force[0], trial.force[1]};
-  made.pressed = trial.force[2];
+  // The unknowns are the forces of the node on the pad.
+  made.friction = {-trial.force[0], -trial.force[1]};
+  made.pressed = -trial.force[2];
   const Memory start = Memory::of(trial.history);
   made.pull =
       start.friction / pad.tangential_stiffness - (made.moved.head<2>() - start.moved.head<2>());
   return made;
 }
 
-/// Rows of a pad with their derivatives by u and by the forces, along the axes.
+/// Rows of a pad with their derivatives by u and by the unknowns, along the axes.
 struct Rows {
   Vector3d value = Vector3d::Zero();
   Matrix3d by_moved = Matrix3d::Zero();
@@ -88,28 +89,28 @@ Rows rows_of(const Pad& pad, const Trial& trial, JointStatus status, const State
   made.value[along_normal] = now.moved[along_normal] +
                              trial.opening * (pad.clearance + now.pressed / pad.normal_stiffness);
   made.by_moved(along_normal, along_normal) = 1.0;
-  made.by_force(along_normal, along_normal) = trial.opening / pad.normal_stiffness;
-  made.value.head<2>() = -compliance * now.friction;
+  made.by_force(along_normal, along_normal) = -trial.opening / pad.normal_stiffness;
+  made.value.head<2>() = compliance * now.friction;
   made.by_force.topLeftCorner<2, 2>() = -compliance * Matrix2d::Identity();
   if (trial.model != JointModel::friction || pad.friction_coefficient == 0.0) return made;
   const double size = now.pull.norm();
   if (!is_slip(status) || size == 0.0) {
-    made.value.head<2>() += now.pull;
-    made.by_moved.topLeftCorner<2, 2>() = -Matrix2d::Identity();
+    made.value.head<2>() -= now.pull;
+    made.by_moved.topLeftCorner<2, 2>() = Matrix2d::Identity();
     return made;
   }
   const double bound = pad.friction_coefficient * now.pressed * compliance;
   // If the trial force is below half of the friction limit, it is doubled instead of scaled to the
   // limit, as in a ball joint: the direction of a tiny slide is mostly rounding.
   if (size < 0.5 * bound) {
-    made.value.head<2>() += 2.0 * now.pull;
-    made.by_moved.topLeftCorner<2, 2>() = -2.0 * Matrix2d::Identity();
+    made.value.head<2>() -= 2.0 * now.pull;
+    made.by_moved.topLeftCorner<2, 2>() = 2.0 * Matrix2d::Identity();
     return made;
   }
   const Vector2d direction = now.pull / size;
-  made.value.head<2>() += bound * direction;
+  made.value.head<2>() -= bound * direction;
   made.by_moved.topLeftCorner<2, 2>() =
-      -bound / size * (Matrix2d::Identity() - direction * direction.transpose());
+      bound / size * (Matrix2d::Identity() - direction * direction.transpose());
   made.by_force.block<2, 1>(0, along_normal) = pad.friction_coefficient * compliance * direction;
   return made;
 }
@@ -129,7 +130,7 @@ void set_slipped(const Pad& pad, const State& now, Rows& rows) {
   rows.value[Pad::slide_row] = size - compliance * along;
   const Vector2d by_pull = direction - compliance / size * (now.friction - along * direction);
   rows.by_moved.block<1, 2>(Pad::slide_row, 0) = -by_pull.transpose();
-  rows.by_force.block<1, 2>(Pad::slide_row, 0) = -compliance * direction.transpose();
+  rows.by_force.block<1, 2>(Pad::slide_row, 0) = compliance * direction.transpose();
 }
 
 }  // namespace
@@ -200,7 +201,7 @@ void Pad::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) 
   Rows rows = rows_of(*this, trial, status, now);
   if (trial.unslipped) set_slipped(*this, now, rows);
   const Matrix3d& axes = trial.frame.axes;
-  const Vector3d force = axes * Vector3d(now.friction[0], now.friction[1], now.pressed);
+  const Vector3d force = axes * Vector3d(trial.force[0], trial.force[1], trial.force[2]);
   // Dashpots act on an open pad.
   const bool damped = status == JointStatus::open || trial.damps_contact;
   const double slack = damped ? trial.slack_stiffness : 0.0;
@@ -273,14 +274,14 @@ double Pad::slip(const Trial& trial, const double* after) const {
   return (state_of(*this, trial).pull - end.friction / tangential_stiffness).norm();
 }
 
-double Pad::dissipation(const Trial& trial, const double* after, double slip) const {
+double Pad::dissipation(const Trial& trial, const double* after, double) const {
   const Memory start = Memory::of(trial.history);
   const Memory end = Memory::of(after);
-  if (end.pressed == 0.0) {
-    // The elastic deflection of a pad that opens is released as heat.
-    return 0.5 * start.friction.squaredNorm() / tangential_stiffness;
-  }
-  return friction_coefficient * 0.5 * (start.pressed + end.pressed) * slip;
+  // Work against the mean friction minus the energy of the deflection: zero while the pad sticks.
+  const Vector2d slide = end.moved.head<2>() - start.moved.head<2>();
+  const double work = -0.5 * (start.friction + end.friction).dot(slide);
+  const double stored = end.friction.squaredNorm() - start.friction.squaredNorm();
+  return work - 0.5 * stored / tangential_stiffness;
 }
 
 double Pad::elastic_energy(const Trial&, const double* now) const {
@@ -300,7 +301,7 @@ void Pad::describe(const Trial& trial, double* outputs) const {
 Seat Pad::seat(const Trial& trial, double opened, double next, double rounding) const {
   Seat seat;
   seat.force = trial.force;
-  seat.touches = opened > 0.0 || trial.force[2] > rounding;
+  seat.touches = opened > 0.0 || -trial.force[2] > rounding;
   if (seat.touches) seat.moved = -(next - opened) * clearance * normal;
   return seat;
 }

@@ -52,11 +52,13 @@ class NoSupport(StatejumpError):
 
 
 def supported(truss: ResolvedTruss) -> np.ndarray:
-    """Return for each node (n,) whether it has a support, or a constraint that acts as a support."""
+    """Return for each node (n,) whether it has a support, a constraint that acts as one, or rests on ground."""
     nodes = truss.nodes
     held, guided = nodes.fixed[:, : truss.dimension].any(axis=1), nodes.guide_normal.any(axis=1)
     found = np.asarray(held | guided)
     found[truss.constraints.grounded()] = True
+    for joint in JOINTS:
+        found[joint.resting_nodes(truss.joints[joint.section])] = True
     return found
 
 

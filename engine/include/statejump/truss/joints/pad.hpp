@@ -22,7 +22,7 @@ namespace statejump::truss {
 /// (radial return [1]). Its direction is exact for a straight slide, otherwise first-order accurate
 /// in the increment.
 ///
-/// **Unknowns.** The forces t along two directions of the plane, and λ.
+/// **Unknowns.** The forces of the node on the pad: −t along two directions of the plane, and −λ.
 ///
 /// [1] J. C. Simo, T. J. R. Hughes, Computational Inelasticity, Springer 1998, ch. 3.3.
 struct Pad : PlainJoint {
@@ -67,7 +67,7 @@ struct Pad : PlainJoint {
   JointStatus rest() const {
     return friction_coefficient > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  bool has_play() const { return clearance > 0.0; }
+  bool has_play() const { return true; }
   Seat seat(const Trial& trial, double opened, double next, double rounding) const;
 };
 

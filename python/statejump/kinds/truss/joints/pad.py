@@ -89,6 +89,9 @@ class PadType(JointType[Pad, Pads]):
     def joined(self, joints: Pads) -> np.ndarray:
         return joints.nodes[joints.nodes[:, 1] != GROUND]
 
+    def resting_nodes(self, joints: Pads) -> np.ndarray:
+        return np.asarray(joints.nodes[joints.nodes[:, 1] == GROUND, 0])
+
     def place_nodes(self, truss: ResolvedTruss, joints: Pads) -> np.ndarray:
         return np.asarray(joints.nodes[:, 0])
 

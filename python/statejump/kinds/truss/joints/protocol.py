@@ -244,6 +244,10 @@ class JointType(PartType[ItemType, ArraysType]):
         """Return the pairs of nodes (k, 2) that the joints couple."""
         return np.zeros((0, 2), dtype=int)
 
+    def resting_nodes(self, joints: ArraysType) -> np.ndarray:
+        """Return the nodes that rest on ground, which supports them."""
+        return np.zeros(0, dtype=int)
+
     # ---------------------------------------------------------------- solver
 
     def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
