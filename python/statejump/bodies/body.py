@@ -13,9 +13,11 @@ from statejump.bodies.checks import (
     Measured, as_loads, checked_mass, checked_stiffness, free_shapes_of_loads, rigid_motions,
 )
 from statejump.core.errors import NotAllowed
+from statejump.core.later import Later
 from statejump.core.notes import Note
 
 Matrix = NDArray[np.float64]
+_drawn = Later("statejump.bodies.figure:drawn")
 
 __all__ = ["PATCHES", "CondensedBody", "Measured", "Mesh", "Points", "from_arrays"]
 
@@ -109,6 +111,10 @@ class CondensedBody:
     def rigid_motions(self) -> Matrix:
         """Dofs (N, 6) of unit translations along, and unit rotations about, the axes of the body."""
         return rigid_motions(self.node_positions_m, self.node_freedoms, self.modes)
+
+    def plot(self) -> Any:
+        """Return a figure of the body, its free thermal shapes and its modes."""
+        return _drawn(self)
 
     @property
     def notes(self) -> tuple[Note, ...]:

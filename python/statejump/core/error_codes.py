@@ -1012,6 +1012,8 @@ CODES: dict[str, Code] = {
         what="stiffness is not symmetric, relative error {error:.2g}",
         cause="rows and columns are in different orders, or the file is damaged",
     ),
+    "body_pair": Code(cause="must be NODE=SYSTEM with two whole numbers"),
+    "body_place": Code(cause="must be NSET=X,Y,Z"),
     "body_patch": Code(cause="must be empty or one of {patches}"),
     "body_row_order": Code(
         what="stiffness: rigid motions cause forces, relative error {error:.2g}",
