@@ -44,6 +44,9 @@ def balanced(stiffness: Any, rows: Sequence[NDArray[np.int64]]) -> Any:
     return (stiffness - sparse.csc_matrix((values, (first, second)), (size, size))).tocsc()
 
 
+LOOSE = 1e-8  # squared frequency of a mode without stiffness, over that of the highest mode
+
+
 @attrs.frozen
 class Reduced:
     """Reduced matrices.
@@ -114,6 +117,8 @@ def _modes(stiffness: Any, mass: Any, saddle: Saddle, count: int) -> tuple[Matri
                                      matvec=lambda x: saddle.solve(x.reshape(-1, 1), None).ravel())
     start = saddle.solve(np.random.default_rng(1).normal(size=(size, 1)), None).ravel()
     values, vectors = solvers.eigsh(stiffness, count, mass, sigma=0.0, OPinv=inverse, v0=start, tol=1e-12)
+    if values.min() <= LOOSE * values.max():
+        raise FailedRun(code="condense_loose")
     order = np.argsort(values)
     return np.asarray(values[order]), np.asarray(vectors[:, order])
 
