@@ -44,7 +44,8 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     )),
     ("present", (
         "statejump.core.figures", "statejump.core.html", "statejump.report",
-        "statejump.bores.picture", "statejump.campaign.plots", "statejump.control.plot",
+        "statejump.bodies.figure", "statejump.bodies.page", "statejump.bores.picture", "statejump.campaign.plots",
+        "statejump.control.plot",
         "statejump.identification.picture", "statejump.laws.curves",
         "statejump.kinds.spring_slider.figure",
         "statejump.kinds.statics.figure", "statejump.kinds.statics.files",

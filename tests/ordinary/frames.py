@@ -7,8 +7,8 @@
 
 A frame is an ordinary structure (``structures.py``) whose bars are tubes with rigid connections. Half of the tubes have
 a thermal gradient. Bars that have keys of links only stay bars. The nodes of tubes turn the parts of revolutes and
-balls. Some feet rest on pads. Prints a table of the outcomes by family. Frames whose joints lose contact are not changed: statics determines
-neither the position of slack parts nor the jump that they leave.
+balls. Some feet rest on pads. Prints a table of the outcomes by family. Frames whose joints lose contact are not
+changed: statics determines neither the position of slack parts nor the jump that they leave.
 """
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from statejump.core.notes import Note
 from statejump.schema.fields import Attached
 
 Matrix = NDArray[np.float64]
-_TO_JSON = Later("statejump.bodies.case_files:to_json")
+_TO_JSON, _drawn = (Later(f"statejump.bodies.{name}") for name in ("case_files:to_json", "figure:drawn"))
 
 __all__ = ["PATCHES", "CondensedBody", "Measured", "Mesh", "Points", "from_arrays"]
 
@@ -119,6 +119,10 @@ class CondensedBody(Attached):
     def to_json(self) -> dict[str, Any]:
         made: dict[str, Any] = _TO_JSON(self)
         return made
+
+    def plot(self) -> Any:
+        """Return a figure of the body, its free thermal shapes and its modes."""
+        return _drawn(self)
 
     @property
     def notes(self) -> tuple[Note, ...]:

@@ -45,6 +45,7 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "Trusses and antennas": {
         "truss": ("truss:truss_command", "Trusses: make, draw, and what a designer asks of them."),
+        "body": ("body:body_command", "Condensed bodies of finite-element models: make, import, check, draw."),
     },
     "Many cases": {
         "montecarlo": ("campaign:montecarlo_command", "Many samples of a case whose parameters are random."),

@@ -66,7 +66,8 @@ def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
             raise NotAllowed(option, value, code="units_in_columns", file=file)
 
 
-def _units(system: str | None, length: float | None, force: float | None) -> Units:
+def units_of(system: str | None, length: float | None, force: float | None) -> Units:
+    """Return the units of a deck from the options of a command."""
     if system is None:
         return Units(length or 1.0, force or 1.0)
     for option, value in (("--length-unit", length), ("--force-unit", force)):
@@ -148,7 +149,7 @@ def import_command(
     if deck.named_units:
         _refuse_units(file, {"--units": units, "--length-unit": length_unit, "--force-unit": force_unit})
     document = case_document(
-        deck, folder_name(output.stem), units=_units(units, length_unit, force_unit),
+        deck, folder_name(output.stem), units=units_of(units, length_unit, force_unit),
         temperature_change_K=temperature_change, density_kg_per_m3=density,
         links={key: value for key, value in links.items() if value is not None}, fixed=[_held(text) for text in fixed],
         joints=[_joint(text) for text in joints],

@@ -1033,6 +1033,8 @@ CODES: dict[str, Code] = {
         what="stiffness is not symmetric, relative error {error:.2g}",
         cause="rows and columns are in different orders, or the file is damaged",
     ),
+    "body_pair": Code(cause="must be NODE=SYSTEM with two whole numbers"),
+    "body_place": Code(cause="must be NSET=X,Y,Z"),
     "body_patch": Code(cause="must be empty or one of {patches}"),
     "body_row_order": Code(
         what="stiffness: rigid motions cause forces, relative error {error:.2g}",
@@ -1118,6 +1120,11 @@ CODES: dict[str, Code] = {
     ),
     "condense_keyword": Code(what="line {line}: *{keyword} is not supported", cause="{why}"),
     "condense_kind": Code(cause="the kind of a patch must be one of {kinds}"),
+    "condense_loose": Code(
+        what="a mode has no stiffness",
+        cause="a part is loose, or a single row of elements with reduced integration moves without strain",
+        remedy="use two elements through the thickness",
+    ),
     "condense_modes": Code(what="{count} modes are too many", cause="the mesh has at most {most}"),
     "condense_no_density": Code(cause="the deck has no *DENSITY"),
     "condense_no_displacements": Code(what="CalculiX printed no displacements"),

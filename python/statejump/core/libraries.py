@@ -6,6 +6,7 @@ Seconds in comments are import times with warm file caches.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Any
 
 
@@ -28,3 +29,8 @@ def sparse() -> Any:
     from scipy import sparse  # 0.1 s
 
     return sparse
+
+
+def scipy(part: str) -> Any:
+    """Return a part of SciPy, such as ``linalg`` or ``sparse.linalg``."""
+    return import_module(f"scipy.{part}")  # 0.1 s

@@ -5,6 +5,7 @@ With rows W, the motion of a patch is q = W u. The body of least energy for give
 """
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import attrs
@@ -15,6 +16,35 @@ from statejump.core import libraries
 from statejump.core.errors import FailedRun
 
 Matrix = NDArray[np.float64]
+
+
+UNBALANCED = 1e-9  # relative force of translations that is no rounding: the rows are not all translations
+
+
+def balanced(stiffness: Any, rows: Sequence[NDArray[np.int64]]) -> Any:
+    """Return a stiffness whose translations cause no force: the block of each node is minus the sum of the others.
+
+    Thin solids have entries that are 1e9 times those of the reduced stiffness. The 14 digits of CalculiX then leave
+    forces of translations that exceed those of bending.
+
+    :param rows: of each node, rows (3, levels)
+    """
+    sparse = libraries.sparse()
+
+    points = np.concatenate([levels.T for levels in rows])  # (points, 3)
+    size = stiffness.shape[0]
+    if points.size != size:
+        return stiffness
+    motions = sparse.csr_matrix((np.ones(size), (points.ravel(), np.tile([0, 1, 2], len(points)))), (size, 3))
+    left = (stiffness @ motions).toarray()
+    if np.abs(left).max() > UNBALANCED * np.abs(stiffness.diagonal()).max():
+        return stiffness
+    first, second = np.repeat(points, 3, axis=1).ravel(), np.tile(points, (1, 3)).ravel()
+    values = left[first, np.tile([0, 1, 2], 3 * len(points))]
+    return (stiffness - sparse.csc_matrix((values, (first, second)), (size, size))).tocsc()
+
+
+LOOSE = 1e-8  # squared frequency of a mode without stiffness, over that of the highest mode
 
 
 @attrs.frozen
@@ -36,14 +66,12 @@ class Saddle:
 
     def __init__(self, stiffness: Any, rows: Any) -> None:
         sparse = libraries.sparse()
-        from scipy.sparse.linalg import splu  # loads SuperLU, 0.1 s
-
         self.size, self.count = stiffness.shape[0], rows.shape[0]
         self.scale = float(np.abs(stiffness.diagonal()).mean())
         scaled = rows * self.scale
         self.matrix = sparse.bmat([[stiffness, scaled.T], [scaled, None]], format="csc")
         try:
-            self.factors = splu(self.matrix)
+            self.factors = libraries.scipy("sparse.linalg").splu(self.matrix)
         except RuntimeError:
             raise FailedRun(code="condense_singular") from None
 
@@ -81,14 +109,16 @@ def reduce(stiffness: Any, mass: Any, rows: Any, modes: int) -> Reduced:
 
 def _modes(stiffness: Any, mass: Any, saddle: Saddle, count: int) -> tuple[Matrix, Matrix]:
     """Return the squared angular frequencies and the shapes of the lowest modes with held patches, of unit mass."""
-    from scipy.sparse.linalg import LinearOperator, eigsh  # loads ARPACK, 0.1 s
-
+    solvers = libraries.scipy("sparse.linalg")
     size = saddle.size
     if count >= size - saddle.count - 1:
         raise FailedRun(code="condense_modes", count=count, most=size - saddle.count - 2)
-    inverse = LinearOperator((size, size), matvec=lambda x: saddle.solve(x.reshape(-1, 1), None).ravel(), dtype=float)
+    inverse = solvers.LinearOperator((size, size), dtype=float,
+                                     matvec=lambda x: saddle.solve(x.reshape(-1, 1), None).ravel())
     start = saddle.solve(np.random.default_rng(1).normal(size=(size, 1)), None).ravel()
-    values, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=inverse, v0=start, tol=1e-12)
+    values, vectors = solvers.eigsh(stiffness, count, mass, sigma=0.0, OPinv=inverse, v0=start, tol=1e-12)
+    if values.min() <= LOOSE * values.max():
+        raise FailedRun(code="condense_loose")
     order = np.argsort(values)
     return np.asarray(values[order]), np.asarray(vectors[:, order])
 

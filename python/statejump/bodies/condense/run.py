@@ -19,7 +19,7 @@ from statejump.bodies.condense import ccx
 from statejump.bodies.condense.deck import BodyDeck, corners_of, read, with_density
 from statejump.bodies.condense.patches import patch
 from statejump.bodies.condense.patterns import Pattern, of_names, pattern
-from statejump.bodies.condense.reduce import Reduced, reduce, rigid_columns
+from statejump.bodies.condense.reduce import Reduced, balanced, reduce, rigid_columns
 from statejump.core import libraries
 from statejump.core.errors import FailedRun, NotAllowed, StatejumpError, located
 from statejump.core.scratch import scratch
@@ -152,7 +152,7 @@ def _stored(deck: BodyDeck, units: Units, folder: Path) -> _Mesh:
             by_node.setdefault(node, [[], [], []])[direction - 1].append(row)
     rows = {node: np.array(several) for node, several in by_node.items()
             if len(several[0]) == len(several[1]) == len(several[2])}
-    stiffness = ccx.matrix(folder / "free.sti", len(labels))
+    stiffness = balanced(ccx.matrix(folder / "free.sti", len(labels)), list(rows.values()))
     mass = ccx.matrix(folder / "free.mas", len(labels)) if deck.has_density else None
     return _Mesh(deck, units, stiffness, mass, rows)
 
@@ -263,9 +263,7 @@ def _support(mesh: _Mesh, used: Sequence[int]) -> list[tuple[int, int]]:
     corners = [first, second, third]
     size = float(np.linalg.norm(places[second] - places[first]))
     motions = rigid_columns(places[corners], places[first]) / np.array([1, 1, 1, size, size, size])
-    from scipy.linalg import qr  # loads LAPACK, 0.1 s
-
-    order = qr(motions.T, pivoting=True, mode="r")[1][:6]
+    order = libraries.scipy("linalg").qr(motions.T, pivoting=True, mode="r")[1][:6]
     return [(nodes[corners[int(place) // 3]], int(place) % 3) for place in sorted(order)]
 
 
