@@ -120,7 +120,7 @@ def _of_case(
     with undivided(console, f"{case.name}, reduced model") as on_progress:
         run = require(case, ReducedModel).reduced(case, on_progress)
     history = surface.history(run, measure)
-    moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
+    moves = surface.displacements_m(run, design, nodes)
     worst = int(np.argmax(history["rms_design_m"]))
     return design, {
         f"farthest from the design, at {history['temperature_change_K'][worst]:.4g} K": moves[worst],

@@ -22,6 +22,12 @@ def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
     return found
 
 
+def displacements_m(run: Run, design: Design, nodes: np.ndarray) -> np.ndarray:
+    """Return the displacements (samples, nodes, 3) of the nodes and points of a surface [m]."""
+    places = [np.asarray(run.history[key].values) for key in ("position_m", "point_position_m") if key in run.history]
+    return np.asarray(np.concatenate(places, axis=1)[:, nodes] - design.position_m)
+
+
 def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
     """Return the errors of the surface at every sample of a run of a truss, relative to the reference configuration.
 
@@ -31,8 +37,7 @@ def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
     :raises StatejumpError: the run is not that of a truss with a [reflector]
     """
     design, nodes = reflector_of(run.definition)
-    places = [np.asarray(run.history[key].values) for key in ("position_m", "point_position_m") if key in run.history]
-    moved = np.concatenate(places, axis=1)[:, nodes] - design.position_m
+    moved = displacements_m(run, design, nodes)
     check_measure(measure)
     residual, moves = design.best_fits(moved, measure)
     best = moves["rigid_focal"]
