@@ -1104,6 +1104,11 @@ CODES: dict[str, Code] = {
         remedy="give a file with EXTRN or ASET cards, or nodes with equally many dofs",
     ),
     "matrix_without_nodes": Code(what="the stiffness has no dofs of nodes"),
+    "condense_beam_node": Code(
+        what="node {node} belongs to a beam",
+        cause="the section of a beam has several nodes in CalculiX",
+        remedy="name nodes of solids or shells only",
+    ),
     "condense_dependent": Code(
         what="node {node} has no dofs of its own",
         cause="an equation, a tie or a joint of shells makes it depend on other nodes",
@@ -1112,7 +1117,7 @@ CODES: dict[str, Code] = {
     "condense_element": Code(
         what="line {line}: elements of type {kind}",
         cause="bodies are condensed of {known}",
-        remedy="keep beams outside of the body, as [[beam]]",
+        remedy="keep other elements outside of the body",
     ),
     "condense_initial": Code(
         what="*INITIAL CONDITIONS has several temperatures",
