@@ -644,7 +644,8 @@ CODES: dict[str, Code] = {
     "bounds_without_friction": Code(
         what="no joint has friction", cause="every history returns to the same state", remedy="no bound is needed",
     ),
-    "bounds_bad_output": Code(cause="must be node:NAME or node:NAME.x, .y, .z with a free direction"),
+    "bounds_bad_output": Code(cause="must be node:NAME, node:NAME.x or node:NAME.xy with a free direction, or, of a surface, "
+                              "rms, rms:design, rms:rigid, tilt, zernike:K or point:X,Y,Z"),
     "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",
                                   remedy="give node:NAME"),
     "bounds_bad_range": Code(cause="must be LOWEST:HIGHEST with LOWEST <= 0 <= HIGHEST [K], for example -80:60"),

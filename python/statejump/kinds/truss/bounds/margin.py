@@ -44,6 +44,12 @@ class Margin:
             return np.zeros(len(rows))
         return np.asarray(np.abs(rows @ self.by_defect) @ self.defect_N)
 
+    def of_vector(self, rows: np.ndarray) -> float:
+        """Return the norm that exact geometry adds to a vector output with rows (m, dofs)."""
+        if self.by_defect is None:
+            return 0.0
+        return float(np.linalg.norm(rows @ self.by_defect, axis=0) @ self.defect_N)
+
 
 @dataclass(frozen=True)
 class _Bars:

@@ -24,6 +24,7 @@ WIDER = 1.02  # growth of ranges that do not yet reproduce themselves
 MOST_NARROWED, NARROWED = 5, 1e-3  # rounds that narrow ranges, and the smallest gain of a round
 NEAR = 1e-7  # smallest half range over the slide that friction of the joint itself permits
 SINGULAR = 1e-12
+WAYS = 16  # directions of a half-circle in which the width of an output with two components is bounded
 
 
 @dataclass(frozen=True)
@@ -63,8 +64,11 @@ class Temperatures:
         return replace(self, lowest_K=factor * self.lowest_K, highest_K=factor * self.highest_K)
 
     def peak(self, gain: np.ndarray) -> tuple[float, float]:
-        """Return the lowest and the highest value of gain · ΔT of the elements."""
-        by_variable = gain @ self.of_elements
+        """Return the lowest and the highest value of gain (1, elements) · ΔT; of a vector, 0 and its norm."""
+        if len(gain) > 1:
+            most = np.maximum(np.abs(self.lowest_K), np.abs(self.highest_K))
+            return 0.0, float(np.linalg.norm(gain @ self.of_elements, axis=0) @ most)
+        by_variable = gain[0] @ self.of_elements
         ends = np.sort(np.array([by_variable * self.lowest_K, by_variable * self.highest_K]), axis=0)
         return float(ends[0].sum()), float(ends[1].sum())
 
@@ -130,16 +134,43 @@ class WithinRange:
     rest: Polytope | None = None  # λ/f of joints with friction
     rubbing: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
-    def spread(self, gain: np.ndarray) -> tuple[float, float]:
-        """Return the spread [m] of the output −gain · λ within the range, and the largest jump from the start."""
+    def extent(self, gains: np.ndarray, most: float) -> tuple[float, float]:
+        """Return the spread of the output −gains λ within the range, and the largest jump from the start.
+
+        :param gains: (m, joints)
+        :param most: spread after any history
+        """
         if self.rest is None or self.start_N is None:
             return nan, nan
-        cost = -(gain * self.of.limit_N)[self.rubbing]
-        start = -float(gain @ self.start_N)
         if self.verdict.kind == "never_slips":
             return 0.0, 0.0
+        ways, factor = _ways(gains * self.of.limit_N)
+        found = np.array([self._width(way @ gains) for way in ways])
+        if factor:
+            spread, jump = factor * found.max(axis=0)
+        else:
+            spread, jump = np.linalg.norm(found, axis=0)
+        return min(float(spread), most), min(float(jump), most)
+
+    def _width(self, gain: np.ndarray) -> tuple[float, float]:
+        assert self.rest is not None and self.start_N is not None
+        cost = -(gain * self.of.limit_N)[self.rubbing]
+        start = -float(gain @ self.start_N)
         high, low = self.rest.highest_value(cost), -self.rest.highest_value(-cost)
         return high - low, max(high - start, start - low)
+
+
+def _ways(columns: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return directions (k, m) whose widths bound the diameter of a set in the span of columns (m, n).
+
+    The second result is the factor on the largest width; 0: the widths are those of a box.
+    """
+    left, size, _ = np.linalg.svd(columns, full_matrices=False)
+    rank = max(1, int((size > SINGULAR * size.max(initial=0.0)).sum()))
+    if rank != 2:
+        return left[:, :rank].T, 1.0 if rank == 1 else 0.0
+    angle = np.pi * np.arange(WAYS) / WAYS
+    return np.stack((np.cos(angle), np.sin(angle)), axis=1) @ left[:, :2].T, 1 / np.cos(0.5 * np.pi / WAYS)
 
 
 def within(of: Sliding, temperatures: Temperatures) -> WithinRange:

@@ -103,16 +103,16 @@ class Sliding:
         found = self.slides @ self.by_friction
         return np.asarray(0.5 * (found + found.T))
 
-    def gains(self, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return B K⁻¹c (joints,) [m/N] and G ᵀK⁻¹c (elements,) [m/K] of an output c·q [m].
+    def gains_of(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return E K⁻¹Bᵀ (m, joints) [m/N] and E K⁻¹G (m, elements) [m/K] of an output E q, with rows (m, dofs).
 
         Gains by temperature that are rounding of the solution are 0.
         """
-        adjoint = self.solve(row)
-        thermal = np.asarray(self.heating_N_per_K.T @ adjoint)
-        largest = np.asarray(abs(self.heating_N_per_K).sum(axis=0)).ravel() * np.abs(adjoint).max(initial=0.0)
-        thermal[np.abs(thermal) < ROUNDED * largest] = 0.0
-        return np.asarray(self.slides @ adjoint), thermal
+        adjoint = self.solve(rows.T)
+        thermal = np.asarray((self.heating_N_per_K.T @ adjoint).T)
+        largest = np.asarray(abs(self.heating_N_per_K).sum(axis=0)).ravel()
+        thermal[np.abs(thermal) < ROUNDED * np.outer(np.abs(adjoint).max(axis=0, initial=0.0), largest)] = 0.0
+        return np.asarray((self.slides @ adjoint).T), thermal
 
 
 def sliding(case: TrussCase) -> Sliding:
