@@ -231,7 +231,7 @@ def test_margin_of_one_turned_bar_bounds_its_exact_force() -> None:
 
 
 REFUSED = {
-    "clearance": ("umbrella_rib", {}, "bounds_of_clearance"),
+    "clearance": ("ball_tripod", {}, "bounds_of_clearance"),
     "stop": ("telescope", {"clearance_plus_m": 1e-4}, "bounds_of_stop"),
     "play": ("bolted_tubes", {}, "bounds_of_stop"),
     "no friction": ("telescope", {"friction_coefficient": 0.0}, "bounds_without_friction"),
@@ -318,5 +318,5 @@ def test_command_writes_a_case_that_attains_the_bound(statejump: Any, tmp_path: 
 
 
 def test_command_refuses_in_one_sentence(statejump: Any) -> None:
-    done: Outcome = statejump("bounds", "mast_6")
+    done: Outcome = statejump("bounds", "ball_tripod")
     assert done.status == 2 and done.failure.code == "bounds_of_clearance"

@@ -626,6 +626,16 @@ CODES: dict[str, Code] = {
         cause="not yet: bounds of joints with clearance (class C)",
         remedy="simulate the histories that matter: 'statejump truss answers'",
     ),
+    "bounds_of_open_contact": Code(
+        what="{joint_with_clearance} carries no force without friction",
+        cause="the direction of its contact is open",
+        remedy="preload the joint",
+    ),
+    "bounds_of_amplified_friction": Code(
+        what="friction moments of the joints amplify themselves",
+        cause="no bound of the contact forces exists",
+        remedy="reduce friction or radii of the journals, or run 'statejump truss answers'",
+    ),
     "bounds_of_stop": Code(
         what="{part} may {change} at the reference temperature",
         cause="not yet: bounds across stops, plays and slack cables (class B)",
@@ -644,8 +654,8 @@ CODES: dict[str, Code] = {
     "bounds_without_friction": Code(
         what="no joint has friction", cause="every history returns to the same state", remedy="no bound is needed",
     ),
-    "bounds_bad_output": Code(cause="must be node:NAME, node:NAME.x or node:NAME.xy with a free direction, or, of a surface, "
-                              "rms, rms:design, rms:rigid, tilt, zernike:K or point:X,Y,Z"),
+    "bounds_bad_output": Code(cause="must be node:NAME, node:NAME.x or node:NAME.xy with a free direction, or, of a "
+                              "surface, rms, rms:design, rms:rigid, tilt, zernike:K or point:X,Y,Z"),
     "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",
                                   remedy="give node:NAME"),
     "bounds_bad_range": Code(cause="must be LOWEST:HIGHEST with LOWEST <= 0 <= HIGHEST [K], for example -80:60"),

@@ -2,14 +2,16 @@
 """Outputs of a truss that are bounded: linear functions of the displacements of nodes, scalars or vectors."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.bounds.sliding import AXES, Sliding
 from statejump.kinds.truss.references import known_name
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.surface.design import DEFINITIONS, Design
 from statejump.surface.motion import rotation_rad
 from statejump.surface.zernike import MOST, fitted
@@ -39,7 +41,7 @@ class Output:
         """Whether the output is one number."""
         return len(self.weight) == 1
 
-    def rows(self, of: Sliding) -> np.ndarray:
+    def rows(self, of: Linear) -> np.ndarray:
         """Return E (m, dofs) of e = E q."""
         places = (3 * self.nodes[:, None] + np.arange(3)).ravel()
         return np.asarray(of.of_nodes[places].T @ self.weight.reshape(len(self.weight), -1).T).T
@@ -62,18 +64,31 @@ class Output:
         return Output(self.name, self.unit, self.nodes, np.tensordot(direction, self.weight, axes=1)[None])
 
 
-def chosen(of: Sliding, names: Sequence[str]) -> list[Output]:
+class Linear(Protocol):
+    """A truss whose dofs give the displacements of nodes."""
+
+    @property
+    def truss(self) -> ResolvedTruss:
+        """The truss."""
+
+    @property
+    def of_nodes(self) -> Any:
+        """Displacements of the nodes by the dofs (3 nodes, dofs)."""
+
+
+def chosen(of: Linear, names: Sequence[str], spread_m: Callable[[], np.ndarray]) -> list[Output]:
     """Return the outputs of given names, or those of the nodes with the largest spread.
 
+    :param spread_m: returns the spreads (nodes, 3)
     :raises NotAllowed: a name is none of the outputs
     :raises StatejumpError: the truss has no such surface
     """
     if not names:
-        return _largest(of)
+        return _largest(of.truss.nodes.names, spread_m())
     return [output for name in names for output in _named(of, name)]
 
 
-def _named(of: Sliding, name: str) -> list[Output]:
+def _named(of: Linear, name: str) -> list[Output]:
     what, _, rest = name.partition(":")
     if what == "node":
         return _of_node(of, name, rest)
@@ -84,7 +99,7 @@ def _named(of: Sliding, name: str) -> list[Output]:
     return [Output(name, unit, nodes, _of_surface(design, name, what, rest))]
 
 
-def _of_node(of: Sliding, name: str, rest: str) -> list[Output]:
+def _of_node(of: Linear, name: str, rest: str) -> list[Output]:
     nodes = of.truss.nodes.names
     node, axes, joined = rest, AXES[:of.truss.dimension], False
     head, _, tail = rest.rpartition(".")
@@ -105,7 +120,7 @@ def _axis(name: str, node: int, axis: str) -> Output:
     return Output(name, "m", np.array([node]), np.eye(3)[None, AXES.index(axis)][:, None])
 
 
-def _surface(of: Sliding) -> tuple[Design, np.ndarray]:
+def _surface(of: Linear) -> tuple[Design, np.ndarray]:
     reflector = of.truss.reflector
     if reflector is None:
         raise StatejumpError(code="reflector_missing", case=of.truss.name)
@@ -155,12 +170,19 @@ def _pointing(design: Design, units: np.ndarray, name: str, rest: str) -> np.nda
     return np.asarray(turned.T).reshape(3, len(design.position_m), 3)
 
 
-def _largest(of: Sliding) -> list[Output]:
-    nodes = of.truss.nodes.names
+def _largest(nodes: Sequence[str], spread_m: np.ndarray) -> list[Output]:
+    axes = spread_m.argmax(axis=1)
+    most = np.argsort(-spread_m.max(axis=1), kind="stable")[:SHOWN]
+    return [_axis(f"node:{nodes[node]}.{AXES[axes[node]]}", int(node), AXES[axes[node]])
+            for node in most if spread_m[node, axes[node]] > 0]
+
+
+def spreads_m(of: Sliding) -> np.ndarray:
+    """Return half of the spreads of all nodes (nodes, 3).
+
+    :raises NotAllowed: the truss is too large
+    """
     if of.slides.shape[0] * of.slides.shape[1] > DENSE:
         raise NotAllowed("output", code="bounds_output_missing")
-    spread = (np.abs(of.of_nodes[:3 * len(nodes)] @ of.by_friction) @ of.limit_N).reshape(-1, 3)
-    axes = spread.argmax(axis=1)
-    most = np.argsort(-spread.max(axis=1), kind="stable")[:SHOWN]
-    return [_axis(f"node:{nodes[node]}.{AXES[axes[node]]}", int(node), AXES[axes[node]])
-            for node in most if spread[node, axes[node]] > 0]
+    found = np.abs(of.of_nodes[:3 * len(of.truss.nodes.names)] @ of.by_friction) @ of.limit_N
+    return np.asarray(found).reshape(-1, 3)

@@ -144,8 +144,8 @@ class WithinRange:
             return nan, nan
         if self.verdict.kind == "never_slips":
             return 0.0, 0.0
-        ways, factor = _ways(gains * self.of.limit_N)
-        found = np.array([self._width(way @ gains) for way in ways])
+        directions, factor = ways(gains * self.of.limit_N)
+        found = np.array([self._width(way @ gains) for way in directions])
         if factor:
             spread, jump = factor * found.max(axis=0)
         else:
@@ -160,7 +160,7 @@ class WithinRange:
         return high - low, max(high - start, start - low)
 
 
-def _ways(columns: np.ndarray) -> tuple[np.ndarray, float]:
+def ways(columns: np.ndarray) -> tuple[np.ndarray, float]:
     """Return directions (k, m) whose widths bound the diameter of a set in the span of columns (m, n).
 
     The second result is the factor on the largest width; 0: the widths are those of a box.

@@ -9,19 +9,18 @@ from math import nan
 import numpy as np
 
 from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.bounds.contacts import bounds_of_clearance, with_clearance
 from statejump.kinds.truss.bounds.extremes import farthest, zonogon
 from statejump.kinds.truss.bounds.history import MOST_K, attained
 from statejump.kinds.truss.bounds.margin import Margin, margin
-from statejump.kinds.truss.bounds.outputs import chosen
+from statejump.kinds.truss.bounds.outputs import chosen, spreads_m
 from statejump.kinds.truss.bounds.ranges import Temperatures, WithinRange, parsed_range, within
 from statejump.kinds.truss.bounds.result import Bound, Bounds
 from statejump.kinds.truss.bounds.sliding import Sliding, sliding
+from statejump.kinds.truss.bounds.simulated import MOST_SIMULATED, simulated
 from statejump.kinds.truss.bounds.states import kept_states
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.solve import path as start_of
-from statejump.kinds.truss.solve import solve
 
-MOST_SIMULATED = 100  # joints of a case that is simulated for comparison
 POINTS = 24  # ranges of the picture of the spread over the temperature range
 MOST_FACTOR = 200.0  # on the range up to which joints settle
 REACHED = 0.999  # of the bound over any history, where this picture ends
@@ -40,15 +39,18 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
         or only friction holds a motion
     """
     box = None if range_K is None else parsed_range(range_K)
+    output = [output] if isinstance(output, str) else output
+    if with_clearance(case):
+        return bounds_of_clearance(case, output, box, simulate)
     of = sliding(case)
     if not np.any(of.limit_N > 0):
         raise StatejumpError(code="bounds_without_friction", place=case.name, case=case.name)
-    outputs = chosen(of, [output] if isinstance(output, str) else output)
+    outputs = chosen(of, output, partial(spreads_m, of))
     exact = margin(of)
     facts = kept_states(of, lambda rows: np.abs(rows @ of.by_friction) @ of.limit_N + exact.of(rows))
     temperatures = Temperatures.of_box(of, box) if box else Temperatures.of_programs(of)
     found = within(of, temperatures)
-    path = simulated(case, len(of.joints) <= MOST_SIMULATED if simulate is None else simulate)
+    path = simulated(case, simulate)
     made, histories = [], {}
     for one in outputs:
         rows = one.rows(of)
@@ -77,13 +79,6 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
         of.truss, "A", exact.quality, exact.why, facts, made, [str(joint) for joint in of.joints], of.limit_N,
         found.verdict, temperatures, histories,
         partial(_over_range, of, temperatures, found, made[0]) if shows else None)
-
-
-def simulated(case: TrussCase, whole: bool) -> np.ndarray:
-    """Return the displacements (states, nodes, 3) of the path of a case, or of its start alone."""
-    if whole:
-        return np.asarray(solve(case).states["displacement_m"])
-    return np.asarray(start_of(case.resolve(), progress=lambda share: share <= 0).states["displacement_m"][:1])
 
 
 def _margin(exact: Margin, rows: np.ndarray) -> float:
