@@ -92,7 +92,8 @@ def farthest_state(of: Clearances, row: np.ndarray) -> RestState | None:
     _, slope = _balance(of, free.angle_rad, free.normal_N, np.zeros(count), np.zeros(len(of.limit_N)))
     share = np.sign(_gradient(of, free, row, slope))
     share[share == 0] = 1.0
-    effect = row[3 * count:] - _shift_rows(of, free, row) @ np.linalg.solve(slope, of.force_by_state[:, 3 * count:])
+    by_angles = np.linalg.solve(slope.T, _shift_rows(of, free, row))
+    effect = np.asarray(row[3 * count:] - by_angles @ of.force_by_state[:, 3 * count:])
     other = np.sign(effect) * of.limit_N
     for part in np.linspace(1 / PARTS, 1, PARTS):
         now = rest_state(of, part * share, part * other, best)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Linear programs over the rest states of trusses with clearance revolutes.
 
-Variables: d of each revolute along the middle of its sector and across it (n, t), f, λ of other joints, and both products
-u = d_n q_t, v = d_t q_n. Rows: the sector, the range of q, the friction cone |f| <= sin φ |q|, the moment |d| f = u − v,
-and McCormick's four inequalities of each product.
+Variables: d of each revolute along the middle of its sector and across it (n, t), f, λ of other joints, and both
+products u = d_n q_t, v = d_t q_n. Rows: the sector, the range of q, the friction cone |f| <= sin φ |q|, the moment
+|d| f = u − v, and McCormick's four inequalities of each product.
 """
 from __future__ import annotations
 

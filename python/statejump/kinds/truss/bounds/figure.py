@@ -29,7 +29,9 @@ def bars(name: str, bounds: Sequence[Any]) -> Any:
 
 def _bars(axes: Axes, unit: str, bounds: Sequence[Any]) -> None:
     values = np.array([[getattr(bound, what) for what, _, _ in BARS] for bound in bounds], dtype=float)
-    factor, shown = readable(float(np.nanmax(values)), unit)
+    values[np.isinf(values)] = np.nan
+    largest = float(np.nanmax(values, initial=0.0))
+    factor, shown = readable(largest, unit)
     height = 0.8 / len(BARS)
     for kind, (_, label, colour) in enumerate(BARS):
         if np.isnan(values[:, kind]).all():
@@ -40,7 +42,7 @@ def _bars(axes: Axes, unit: str, bounds: Sequence[Any]) -> None:
                        padding=3)
     axes.set_yticks(np.arange(len(bounds)), [bound.output.name for bound in bounds])
     axes.invert_yaxis()
-    axes.set_xlim(0, 1.15 * (float(np.nanmax(values)) or 1e-9) * factor)
+    axes.set_xlim(0, 1.15 * (largest or 1e-9) * factor)
     axes.set_xlabel(f"difference between two rest states [{shown}]")
     axes.grid(False, axis="y")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.45 / len(bounds)), ncols=2, frameon=False)

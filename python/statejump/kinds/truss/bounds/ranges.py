@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import inf, nan
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.core.start import FRICTIONLESS
+from statejump.kinds.truss.bounds.outputs import Linear
 from statejump.kinds.truss.bounds.programs import Polytope
 from statejump.kinds.truss.bounds.sliding import Sliding
 from statejump.kinds.truss.joints import JOINTS
@@ -25,6 +26,14 @@ MOST_NARROWED, NARROWED = 5, 1e-3  # rounds that narrow ranges, and the smallest
 NEAR = 1e-7  # smallest half range over the slide that friction of the joint itself permits
 SINGULAR = 1e-12
 WAYS = 16  # directions of a half-circle in which the width of an output with two components is bounded
+
+
+class Heated(Linear, Protocol):
+    """A truss with loads by temperature."""
+
+    @property
+    def heating_N_per_K(self) -> Any:
+        """G (dofs, elements)."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +49,7 @@ class Temperatures:
     highest_K: np.ndarray
 
     @staticmethod
-    def of_programs(of: Sliding) -> Temperatures:
+    def of_programs(of: Heated) -> Temperatures:
         """Return the programs of the case, each within its own range."""
         ranges = of.truss.temperature_ranges_K
         numbers, _ = _programs(of)
@@ -50,7 +59,7 @@ class Temperatures:
         return Temperatures(f"programs of the case, {low.min():g} to {high.max():g} K", made, low, high)
 
     @staticmethod
-    def of_box(of: Sliding, box: tuple[float, float]) -> Temperatures:
+    def of_box(of: Heated, box: tuple[float, float]) -> Temperatures:
         """Return all elements that expand, each by itself within a range."""
         numbers, fractions = _programs(of)
         which = np.flatnonzero((np.diff(of.heating_N_per_K.indptr) > 0) & (fractions != 0))
@@ -73,7 +82,7 @@ class Temperatures:
         return float(ends[0].sum()), float(ends[1].sum())
 
 
-def _programs(of: Sliding) -> tuple[np.ndarray, np.ndarray]:
+def _programs(of: Heated) -> tuple[np.ndarray, np.ndarray]:
     """Return the program (-1: none) and the fraction of its ΔT of every element."""
     truss, count = of.truss, of.heating_N_per_K.shape[1]
     numbers, fractions = np.full(count, -1), np.ones(count)
@@ -102,10 +111,12 @@ def parsed_range(given: str | tuple[float, float]) -> tuple[float, float]:
 class Verdict:
     """Whether joints slip within a temperature range.
 
-    :param kind: "never_slips", "settles", "repeats" or "unknown"
+    :param kind: "never_slips", "settles", "repeats", "may_ratchet" or "unknown"
     :param factor: η, the factor on the range up to which joints settle
     :param limiting: joint that limits η
     :param slips: of every joint, whether it may slip; None: unknown
+    :param mechanism: motion that may ratchet
+    :param drift_m: its drift per cycle of the case, simulated; NaN: not simulated
     """
 
     kind: str
@@ -113,11 +124,14 @@ class Verdict:
     factor: float = nan
     limiting: str = ""
     slips: np.ndarray | None = None
+    mechanism: str = ""
+    drift_m: float = nan
 
     def record(self) -> dict[str, Any]:
         """Return the verdict as plain values."""
         return {"kind": self.kind, "text": self.text, "limiting_joint": self.limiting,
-                "factor": self.factor if np.isfinite(self.factor) else None,
+                "factor": self.factor if np.isfinite(self.factor) else None, "mechanism": self.mechanism,
+                "drift_m": None if np.isnan(self.drift_m) else self.drift_m,
                 "slips": None if self.slips is None else [bool(one) for one in self.slips]}
 
 

@@ -68,7 +68,7 @@ class Bound:
         unit = self.output.unit
         return {"output": self.output.name, **{f"{name}_{unit}": plain(getattr(self, name)) for name in NUMBERS},
                 f"peak_thermal_{unit}": [plain(one) for one in self.peak_thermal],
-                f"peak_friction_{unit}": 0.5 * self.spread}
+                f"peak_friction_{unit}": plain(0.5 * self.spread), "unbounded": bool(np.isinf(self.spread))}
 
     def shown(self, name: str) -> str:
         """Return a number as text in the unit of tables; empty: not computed."""
@@ -77,8 +77,8 @@ class Bound:
 
 
 def plain(value: float) -> float | None:
-    """Return a number, or None for NaN."""
-    return None if np.isnan(value) else float(value)
+    """Return a number; None: it is not computed, or infinite."""
+    return float(value) if np.isfinite(value) else None
 
 
 @dataclass(frozen=True)

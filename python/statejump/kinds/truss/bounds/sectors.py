@@ -81,11 +81,9 @@ def first(of: Clearances) -> Sectors:
     def largest(force: np.ndarray) -> np.ndarray:
         return np.asarray(centre + by_shift @ (of.clearance_m + of.depth_m(force)) + by_friction @ force)
 
-    value, vector = np.linalg.eig(by_friction)
-    start = np.abs(vector[:, int(np.abs(value).argmax())].real) + 1.0
-    if np.abs(value).max() >= 1:
+    if np.abs(np.linalg.eigvals(by_friction)).max() >= 1:
         raise _amplified(of)
-    force = LARGE * np.linalg.solve(np.eye(count) - by_friction, largest(np.zeros(count)) * start)
+    force: np.ndarray = LARGE * np.linalg.solve(np.eye(count) - by_friction, largest(np.zeros(count)))
     for _ in range(ROUNDS):
         now = largest(force)
         if np.all(now < force):
@@ -150,23 +148,23 @@ def along(of: Clearances, at: Sectors, angle_rad: np.ndarray) -> np.ndarray:
 
 def narrowed(of: Clearances, at: Sectors, seen: Forces) -> Sectors:
     """Return the sectors that ranges of the forces permit."""
-    tan = of.friction_angle_rad
+    within = of.friction_angle_rad
     certain = seen.least_N > 0
     # n lies within the friction angle of −q.
     middle = seen.middle_rad + np.pi
     middle = middle + 2 * np.pi * np.round((at.middle_rad - middle) / (2 * np.pi))
-    least = np.where(certain, middle - seen.below_rad - tan, -np.inf)
-    most = np.where(certain, middle + seen.above_rad + tan, np.inf)
+    least = np.where(certain, middle - seen.below_rad - within, -np.inf)
+    most = np.where(certain, middle + seen.above_rad + within, np.inf)
     full = at.half_rad >= np.pi * (1 - 1e-12)
     least = np.where(full & certain, least, np.maximum(least, at.least_rad))
     most = np.where(full & certain, most, np.minimum(most, at.most_rad))
     wide = most - least >= 2 * np.pi
     least, most = np.where(wide, at.least_rad, least), np.where(wide, at.most_rad, most)
-    normal = np.cos(tan) * seen.least_N
+    normal = np.cos(within) * seen.least_N
     inner = np.where(certain, of.clearance_m + of.depth_m(normal), at.inner_m)
     outer = of.clearance_m + of.depth_m(seen.most_N)
     return Sectors(least, most, np.maximum(at.inner_m, inner), np.minimum(at.outer_m, outer),
-                   np.minimum(at.friction_N, np.sin(tan) * seen.most_N))
+                   np.minimum(at.friction_N, np.sin(within) * seen.most_N))
 
 
 def propagated(of: Clearances) -> Sectors:

@@ -164,9 +164,14 @@ def _refuse_mechanism(truss: ResolvedTruss, stiffness: Any, guides: Any, of_node
         shape /= np.linalg.norm(shape)
     if abs(shape @ (stiffness @ shape)) > FREE * stiffest:
         return
+    nodes, mode = moved_nodes(truss, of_nodes, shape)
+    raise StatejumpError(code="bounds_of_mechanism", place=truss.name, case=truss.name, nodes=nodes, mode=mode)
+
+
+def moved_nodes(truss: ResolvedTruss, of_nodes: Any, shape: np.ndarray) -> tuple[list[str], str]:
+    """Return the names of the nodes that a motion moves most, and the motion as text."""
     moved = (of_nodes @ shape)[:3 * len(truss.nodes.names)].reshape(-1, 3)
     most = np.argsort(-np.linalg.norm(moved, axis=1), kind="stable")[:3]
     nodes = [truss.nodes.names[node] for node in most if np.linalg.norm(moved[node]) > 0.1 * np.abs(moved).max()]
-    raise StatejumpError(code="bounds_of_mechanism", place=truss.name, case=truss.name, nodes=nodes,
-                         mode=", ".join(f"{truss.nodes.names[node]} ({AXES[int(np.abs(moved[node]).argmax())]})"
-                                        for node in most if truss.nodes.names[node] in nodes))
+    return nodes, ", ".join(f"{truss.nodes.names[node]} ({AXES[int(np.abs(moved[node]).argmax())]})"
+                            for node in most if truss.nodes.names[node] in nodes)

@@ -19,6 +19,7 @@ from statejump.kinds.truss.bounds.result import Bound, Bounds
 from statejump.kinds.truss.bounds.sliding import Sliding, sliding
 from statejump.kinds.truss.bounds.simulated import MOST_SIMULATED, simulated
 from statejump.kinds.truss.bounds.states import kept_states
+from statejump.kinds.truss.bounds.walking import bounds_of_walking, walking
 from statejump.kinds.truss.case import TrussCase
 
 POINTS = 24  # ranges of the picture of the spread over the temperature range
@@ -42,7 +43,14 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
     output = [output] if isinstance(output, str) else output
     if with_clearance(case):
         return bounds_of_clearance(case, output, box, simulate)
-    of = sliding(case)
+    try:
+        of = sliding(case)
+    except StatejumpError:  # also EngineFailed
+        held = walking(case)
+        if held is None:
+            raise
+        return bounds_of_walking(held, case, output, Temperatures.of_box(held, box) if box
+                                 else Temperatures.of_programs(held), simulate)
     if not np.any(of.limit_N > 0):
         raise StatejumpError(code="bounds_without_friction", place=case.name, case=case.name)
     outputs = chosen(of, output, partial(spreads_m, of))
