@@ -636,6 +636,11 @@ CODES: dict[str, Code] = {
         cause="no bound of the contact forces exists",
         remedy="reduce friction or radii of the journals, or run 'statejump truss answers'",
     ),
+    "bounds_of_open_stops": Code(
+        what="the positions and forces of stops, plays and cables have no confirmed range",
+        cause="the truss is nearly a mechanism without them",
+        remedy="stiffen it, or simulate the histories that matter: 'statejump truss answers'",
+    ),
     "bounds_of_stop": Code(
         what="{part} may {change} at the reference temperature",
         cause="not yet: bounds across stops, plays and slack cables (class B)",

@@ -67,11 +67,12 @@ class Bars:
         return len(self.length_m)
 
 
-def bars_of(of: Placed) -> Bars:
+def bars_of(of: Placed, all_cables: bool = False) -> Bars:
+    """Return the links, springs and taut cables, or all cables."""
     truss, place = of.truss, of.truss.nodes.position_m + of.displacement_m
     links, springs = truss.links, truss.springs
-    taut = ~springs.cable | (np.linalg.norm(place[springs.nodes[:, 1]] - place[springs.nodes[:, 0]], axis=1)
-                             > springs.free_length_m)
+    length = np.linalg.norm(place[springs.nodes[:, 1]] - place[springs.nodes[:, 0]], axis=1)
+    taut = all_cables | ~springs.cable | (length > springs.free_length_m)
     nodes = np.concatenate((links.nodes, springs.nodes[taut])).astype(int)
     free = np.concatenate((links.stress_free_length_m, springs.free_length_m[taut]))
     stiffness = np.concatenate((links.axial_stiffness_N / links.stress_free_length_m,
@@ -110,7 +111,8 @@ class Arms:
     stiffness_N_m: np.ndarray
 
 
-def _arms(of: Sliding) -> Arms:
+def arms_of(of: Sliding, all_plays: bool = False) -> Arms:
+    """Return the arms of latches; their stiffnesses are those beyond the plays, or those of the equilibrium."""
     (section,) = (joint.section for joint in JOINTS if joint.turns and not joint.bends)
     latches = of.truss.joints[section]
     which = [index for index, joint in enumerate(of.joints) if joint.section == section]
@@ -128,20 +130,17 @@ def _arms(of: Sliding) -> Arms:
     edge, stiffness = latches.deadband_rad[owner], latches.stiffness_N_m_per_rad[owner]
     beyond = rotation - np.clip(rotation, -edge, edge)
     other = np.abs(latches.preload_moment_N_m[owner] + stiffness * beyond)
-    return Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, np.where(beyond != 0, stiffness, 0.0))
+    return Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, np.where(all_plays | (beyond != 0), stiffness, 0.0))
 
 
 def margin(of: Sliding) -> Margin:
     """Return the bounds of the defects of all rest states."""
     nothing = np.zeros(0)
-    for section in ("beam", "torsion_spring"):
-        if len(of.truss.elements[section].names):
-            return Margin("estimate", f"the margin of exact geometry is not derived for [[{section}]]", nothing)
-    for section in ("hinge", "rigid"):  # also, the reactions of their constraints add no geometric stiffness to K
-        if len(of.truss.joints[section].names):
-            return Margin("estimate", f"the margin of exact geometry is not derived for [[{section}]]", nothing)
+    why = refuses_margin(of)
+    if why:
+        return Margin("estimate", why, nothing)
     bars = bars_of(of)
-    arms = _arms(of)
+    arms = arms_of(of)
     rows = vstack([bars.along, bars.across, arms.rows]).tocsr()
     rotates = vstack([bars.across, arms.rows])
     if not rotates.nnz or abs(rotates).max() < ZERO:
@@ -164,6 +163,15 @@ def margin(of: Sliding) -> Margin:
                       nothing)
     return Margin("linear", "elements rotate; the margin covers exact geometry near the linear rest states", found,
                   by_defect)
+
+
+def refuses_margin(of: Sliding) -> str:
+    """Return why no margin is derived; empty: it is."""
+    for parts, sections in ((of.truss.elements, ("beam", "torsion_spring")), (of.truss.joints, ("hinge", "rigid"))):
+        for section in sections:  # the reactions of joints add no geometric stiffness to K
+            if len(parts[section].names):
+                return f"the margin of exact geometry is not derived for [[{section}]]"
+    return ""
 
 
 def _exact() -> Margin:

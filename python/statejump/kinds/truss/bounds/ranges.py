@@ -194,6 +194,8 @@ def within(of: Sliding, temperatures: Temperatures) -> WithinRange:
     in_part = {joint.section for joint in JOINTS if joint.slips_in_part}
     smooth = [str(of.joints[index]) for index in rubbing
               if of.joints[index].section in in_part or of.truss.sticking == "partial_slip"]
+    if np.any(of.truss.sliders.play_m > 0):
+        return WithinRange(of, Verdict("unknown", "no verdict is derived for plays of sliders"))
     if len(rubbing) > MOST_JOINTS:
         return WithinRange(of, Verdict("unknown", f"not computed for more than {MOST_JOINTS} joints with friction"))
     flexible = of.compliance[np.ix_(rubbing, rubbing)] + np.diag(1 / of.sticking_N_per_m[rubbing])

@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.sparse import bmat, csc_matrix, identity
-from scipy.sparse.linalg import splu
+from scipy.sparse import bmat, csc_matrix, identity, vstack
+from scipy.sparse.linalg import lsqr, splu
 
 from statejump import _engine
 from statejump.core.engine_failures import EngineFailed
@@ -76,6 +76,7 @@ class Sliding:
     :param full_slip_m: slide from zero friction to f without earlier slip
     :param radius_m: slide of a rotation by 1 rad
     :param displacement_m: displacements (nodes, 3) from the reference configuration
+    :param load_N: r, carried by stops and guides
     """
 
     truss: ResolvedTruss
@@ -90,7 +91,14 @@ class Sliding:
     full_slip_m: np.ndarray
     radius_m: np.ndarray
     displacement_m: np.ndarray
+    load_N: np.ndarray
+    guides: Any
     solve: Factors
+
+    def carried_N(self, which: Sequence[int]) -> np.ndarray:
+        """Return the forces of the closed stops of joints at the equilibrium, against the slides."""
+        rows = vstack([self.slides[list(which)], self.guides])
+        return np.asarray(lsqr(rows.T, self.load_N, atol=1e-14, btol=1e-14)[0][:len(which)])
 
     @cached_property
     def by_friction(self) -> np.ndarray:
@@ -134,10 +142,7 @@ def sliding(case: TrussCase) -> Sliding:
         if np.isnan(limits[index]):
             raise StatejumpError(code="bounds_of_clearance", place=truss.name, case=truss.name,
                                  joint_with_clearance=str(named[index]))
-    for slider in np.flatnonzero(truss.sliders.play_m > 0)[:1]:
-        raise StatejumpError(code="bounds_of_stop", place=truss.name, case=truss.name, change="open its play",
-                             part=f"slider '{truss.sliders.names[slider]}'")
-    stiffness, guides = found["stiffness_N_per_m"].tocsc(), found["guides"]
+    stiffness, guides = _stiffness(truss, named, found), found["guides"]
     _refuse_mechanism(truss, stiffness, guides, found["of_nodes"].tocsr())
     if not Factors(stiffness, guides, SOFTER, diag_pivot_thresh=0.0).stable:
         raise StatejumpError(code="bounds_of_unstable", place=truss.name, case=truss.name)
@@ -147,8 +152,23 @@ def sliding(case: TrussCase) -> Sliding:
     return Sliding(
         truss=truss, joints=[named[index] for index in friction], stiffness=stiffness,
         slides=found["slides"].tocsr()[friction], heating_N_per_K=found["heating_N_per_K"].tocsc(),
-        of_nodes=found["of_nodes"].tocsr(), displacement_m=found["displacement_m"],
+        of_nodes=found["of_nodes"].tocsr(), displacement_m=found["displacement_m"], load_N=found["load_N"],
+        guides=guides,
         solve=Factors(stiffness, guides), **of_joints)
+
+
+def _stiffness(truss: ResolvedTruss, named: Sequence[Joint], found: dict[str, Any]) -> Any:
+    """Return K without the plays of sliders, which the engine models by a negative stiffness about their middles.
+
+    This also takes the forces of these springs off the friction limits in ``found``.
+    """
+    stiffness = found["stiffness_N_per_m"].tocsc()
+    which = [index for index, joint in enumerate(named) if joint.section == "slider"]
+    for number in np.flatnonzero(truss.sliders.play_m > 0):
+        row = found["slides"].tocsr()[which[number]]
+        stiffness = stiffness + found["sticking_stiffness_N_per_m"][which[number]] * (row.T @ row)
+        found["friction_limit_N"][which[number]] = truss.sliders.friction_limit_N[number]
+    return stiffness.tocsc()
 
 
 def _refuse_mechanism(truss: ResolvedTruss, stiffness: Any, guides: Any, of_nodes: Any) -> None:

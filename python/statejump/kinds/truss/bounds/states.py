@@ -24,6 +24,15 @@ class Placed(Linear, Protocol):
         """Displacements (nodes, 3) from the reference configuration."""
 
 
+def changing(of: Sliding, ranges: Ranges) -> StatejumpError | None:
+    """Return the refusal of a stop, play or cable that may change its state; None: all keep it."""
+    try:
+        kept_states(of, ranges)
+    except StatejumpError as refused:
+        return refused
+    return None
+
+
 def kept_states(of: Sliding, ranges: Ranges) -> list[str]:
     """Return one sentence for each kind of stop, play or cable that keeps its state in all rest states.
 

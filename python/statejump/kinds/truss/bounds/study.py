@@ -13,12 +13,13 @@ from statejump.kinds.truss.bounds.contacts import bounds_of_clearance, with_clea
 from statejump.kinds.truss.bounds.extremes import farthest, zonogon
 from statejump.kinds.truss.bounds.history import MOST_K, attained
 from statejump.kinds.truss.bounds.margin import Margin, margin
-from statejump.kinds.truss.bounds.outputs import chosen, spreads_m
-from statejump.kinds.truss.bounds.ranges import Temperatures, WithinRange, parsed_range, within
+from statejump.kinds.truss.bounds.outputs import Output, chosen, spreads_m
+from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict, WithinRange, parsed_range, within
 from statejump.kinds.truss.bounds.result import Bound, Bounds
 from statejump.kinds.truss.bounds.sliding import Sliding, sliding
 from statejump.kinds.truss.bounds.simulated import MOST_SIMULATED, simulated
-from statejump.kinds.truss.bounds.states import kept_states
+from statejump.kinds.truss.bounds.states import changing, kept_states
+from statejump.kinds.truss.bounds.switching import bound_of, switching
 from statejump.kinds.truss.bounds.walking import bounds_of_walking, walking
 from statejump.kinds.truss.case import TrussCase
 
@@ -55,6 +56,8 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
         raise StatejumpError(code="bounds_without_friction", place=case.name, case=case.name)
     outputs = chosen(of, output, partial(spreads_m, of))
     exact = margin(of)
+    if changing(of, lambda rows: np.abs(rows @ of.by_friction) @ of.limit_N + exact.of(rows)):
+        return _switching(case, of, outputs, box, attain, simulate)
     facts = kept_states(of, lambda rows: np.abs(rows @ of.by_friction) @ of.limit_N + exact.of(rows))
     temperatures = Temperatures.of_box(of, box) if box else Temperatures.of_programs(of)
     found = within(of, temperatures)
@@ -87,6 +90,23 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
         of.truss, "A", exact.quality, exact.why, facts, made, [str(joint) for joint in of.joints], of.limit_N,
         found.verdict, temperatures, histories,
         partial(_over_range, of, temperatures, found, made[0]) if shows else None)
+
+
+def _switching(case: TrussCase, of: Sliding, outputs: Sequence[Output], box: tuple[float, float] | None, attain: bool,
+               simulate: bool | None) -> Bounds:
+    """Return the bounds of a truss whose stops, plays or cables change their state."""
+    at = switching(of)
+    path = simulated(case, simulate)
+    made, histories = [], {}
+    for output in outputs:
+        bound, history = bound_of(at, case, output, path, attain)
+        made.append(bound)
+        if history is not None:
+            histories[output.name] = history
+    facts = [f"{len(at.linear.parts)} stops, plays and cables are bounded branch by branch"]
+    verdict = Verdict("unknown", "stops, plays or cables change their state, for which no verdict is derived")
+    return Bounds(of.truss, "B", at.quality, at.why, facts, made, [str(joint) for joint in of.joints], of.limit_N,
+                  verdict, Temperatures.of_box(of, box) if box else Temperatures.of_programs(of), histories)
 
 
 def _margin(exact: Margin, rows: np.ndarray) -> float:
