@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import statejump as sj
-from failures import failing
 from statejump.kinds.truss.bounds.sliding import sliding
 from statejump.kinds.truss.bounds.stops import Programs, clipped, farthest_branch, hull
 from statejump.kinds.truss.bounds.study import bounds
@@ -51,12 +50,6 @@ def test_a_stop_that_carries_the_load_of_the_equilibrium() -> None:
     # Without friction, the bar alone would lengthen by 20/k; with it, between (20 − 30)/k and the stop.
     assert found.letter == "B"
     assert found.bounds[0].spread_m == pytest.approx((10 / 30 + 0.2) * reach_m, rel=3e-6)
-
-
-def test_a_motion_that_only_a_stop_holds_is_refused() -> None:
-    # The soft stop that the lattice leans on bears it; without the stop it is nearly a mechanism.
-    with failing("bounds_of_open_stops"):
-        bounds(sj.load(random_stops(np.random.default_rng(13))), simulate=False)
 
 
 @pytest.mark.parametrize("free_length_m", [1.5002, 1.4999])
@@ -128,7 +121,7 @@ def test_states_obey_their_laws_and_lie_within_the_programs(seed: int) -> None:
     assert found.reached >= 0.98 * found.bound
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 4])
+@pytest.mark.parametrize("seed", range(5))
 def test_no_random_history_leaves_the_bounds(seed: int) -> None:
     rng = np.random.default_rng(10 + seed)
     made, most_K = random_stops(rng), float(10 ** rng.uniform(0.5, 2.3))

@@ -19,13 +19,14 @@ from scipy.sparse import csr_matrix, vstack
 from statejump import _engine
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss.bounds.sliding import Factors, Joint
+from statejump.kinds.truss.bounds.sliding import Factors, Joint, check_stable
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import check_at_rest
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import engine_items
 
+NEAR = 1e-9  # relative distance of a closed contact from its clearance
 CLOSED = 1e-9  # smallest force of a closed contact over the largest one
 
 
@@ -103,10 +104,15 @@ def clearances(case: TrussCase) -> Clearances:
     revolutes = [index for index, joint in enumerate(named) if joint.section == "revolute"]
     others = [index for index, joint in enumerate(named) if joint.section not in ("revolute", "rigid")]
     pins, shift = _pins(truss, found)
+    open_ = np.linalg.norm(shift, axis=1) < truss.revolutes.radial_clearance_m * (1 - NEAR)
+    for index in np.flatnonzero(open_)[:1]:
+        raise _open_contact(truss, int(index))
     force, moments = _contacts(truss, found, revolutes, pins, shift)
     guides = found["guides"].tocsr()[~np.isin(found["guide_joint"], revolutes)]
     stiffness = found["stiffness_N_per_m"].tocsc()
-    solve = Factors(stiffness, vstack([guides, pins]).tocsr())
+    held = vstack([guides, pins]).tocsr()
+    check_stable(truss, stiffness, held, found["of_nodes"].tocsr())
+    solve = Factors(stiffness, held)
     slides = found["slides"].tocsr()[others]
     size, count = stiffness.shape[0], len(revolutes)
     loads = np.hstack((moments.T.toarray(), -slides.T.toarray()))
@@ -151,6 +157,11 @@ def _pins(truss: ResolvedTruss, found: Any) -> tuple[Any, np.ndarray]:
     return vstack(rows).tocsr(), np.array(shifts)
 
 
+def _open_contact(truss: ResolvedTruss, index: int) -> StatejumpError:
+    return StatejumpError(code="bounds_of_open_contact", place=truss.name, case=truss.name,
+                          joint_with_clearance=f"revolute '{truss.revolutes.names[index]}'")
+
+
 def _contacts(truss: ResolvedTruss, found: Any, revolutes: Sequence[int], pins: Any, shift: np.ndarray
               ) -> tuple[np.ndarray, Any]:
     """Return q (m, 2) at the equilibrium, and rows (m, dofs) of the moments of friction on both parts.
@@ -164,8 +175,7 @@ def _contacts(truss: ResolvedTruss, found: Any, revolutes: Sequence[int], pins: 
     normal = shift / np.linalg.norm(shift, axis=1)[:, None]
     closed = -(force * normal).sum(axis=1)
     for index in np.flatnonzero(closed <= CLOSED * np.abs(closed).max())[:1]:
-        raise StatejumpError(code="bounds_of_open_contact", place=truss.name, case=truss.name,
-                             joint_with_clearance=f"revolute '{truss.revolutes.names[index]}'")
+        raise _open_contact(truss, int(index))
     rows = []
     for index, joint in enumerate(revolutes):
         friction = guides[np.flatnonzero(joint_of == joint)[1]]

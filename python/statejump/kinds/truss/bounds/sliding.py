@@ -143,9 +143,7 @@ def sliding(case: TrussCase) -> Sliding:
             raise StatejumpError(code="bounds_of_clearance", place=truss.name, case=truss.name,
                                  joint_with_clearance=str(named[index]))
     stiffness, guides = _stiffness(truss, named, found), found["guides"]
-    _refuse_mechanism(truss, stiffness, guides, found["of_nodes"].tocsr())
-    if not Factors(stiffness, guides, SOFTER, diag_pivot_thresh=0.0).stable:
-        raise StatejumpError(code="bounds_of_unstable", place=truss.name, case=truss.name)
+    check_stable(truss, stiffness, guides, found["of_nodes"].tocsr())
     of_joints = {key: found[name][friction] for key, name in (
         ("limit_N", "friction_limit_N"), ("slide_m", "slide_m"), ("full_slip_m", "full_slip_m"),
         ("sticking_N_per_m", "sticking_stiffness_N_per_m"), ("radius_m", "radius_m"))}
@@ -169,6 +167,13 @@ def _stiffness(truss: ResolvedTruss, named: Sequence[Joint], found: dict[str, An
         stiffness = stiffness + found["sticking_stiffness_N_per_m"][which[number]] * (row.T @ row)
         found["friction_limit_N"][which[number]] = truss.sliders.friction_limit_N[number]
     return stiffness.tocsc()
+
+
+def check_stable(truss: ResolvedTruss, stiffness: Any, guides: Any, of_nodes: Any) -> None:
+    """Raise StatejumpError if a truss has a mechanism, or a negative stiffness, where guides permit motion."""
+    _refuse_mechanism(truss, stiffness, guides, of_nodes)
+    if not Factors(stiffness, guides, SOFTER, diag_pivot_thresh=0.0).stable:
+        raise StatejumpError(code="bounds_of_unstable", place=truss.name, case=truss.name)
 
 
 def _refuse_mechanism(truss: ResolvedTruss, stiffness: Any, guides: Any, of_nodes: Any) -> None:

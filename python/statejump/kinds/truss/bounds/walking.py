@@ -170,9 +170,13 @@ def shakedown(of: Walking, start_N: np.ndarray, lowest_N: np.ndarray, highest_N:
     if found.x is not None:
         rest = found.x[1:] * limit
         rest = rest - of.slid @ np.linalg.lstsq(of.slid, rest, rcond=None)[0]
-        room = np.concatenate((limit - start_N - rest, limit + start_N + rest))
         need = np.concatenate((highest_N, -lowest_N))
-        factor = float(np.min(room[need > 0] / need[need > 0])) if room.min() > -ZERO * limit.max() else 0.0
+        needs = need > ZERO * scale
+        for fraction in (1.0, 1 - 1e-7, 1 - 1e-4):  # any residual friction serves, so rounding is stepped back from
+            room = np.concatenate((limit - start_N - fraction * rest, limit + start_N + fraction * rest))
+            if room.min() >= 0:
+                factor = float(np.min(room[needs] / need[needs]))
+                break
     load = upper - lower
     alternates = np.abs(load).max() <= NEARLY * (upper + lower).max(initial=1e-300) or found.bound >= 1 - NEARLY
     return Shakedown(max(factor, 0.0), most * found.bound, load, bool(alternates))
