@@ -394,6 +394,8 @@ CODES: dict[str, Code] = {
     "output_misspelt": Code(cause="did you mean {meant}?"),
     "output_not_vector": Code(cause="{column} is no vector"),
     "output_without_item": Code(cause="there are no {items}"),
+    "output_without_bounds": Code(text="this kind of case has no bounds"),
+    "output_bound_not_chosen": Code(cause="of which output is the bound, as in 'bound:spread_m[node:C.y]'?"),
     "output_without_surface": Code(text="the run has no surface of which the output is"),
     "output_item_undefined": Code(cause="there is no such {what_it_is}; there are {known}"),
     "output_without_items": Code(cause="{column} has no items"),
@@ -626,6 +628,21 @@ CODES: dict[str, Code] = {
         cause="not yet: bounds of joints with clearance (class C)",
         remedy="simulate the histories that matter: 'statejump truss answers'",
     ),
+    "bounds_of_open_contact": Code(
+        what="{joint_with_clearance} carries no force without friction",
+        cause="the direction of its contact is open",
+        remedy="preload the joint",
+    ),
+    "bounds_of_amplified_friction": Code(
+        what="friction moments of the joints amplify themselves",
+        cause="no bound of the contact forces exists",
+        remedy="reduce friction or radii of the journals, or run 'statejump truss answers'",
+    ),
+    "bounds_of_open_stops": Code(
+        what="the positions and forces of stops, plays and cables have no confirmed range",
+        cause="the truss is nearly a mechanism without them",
+        remedy="stiffen it, or simulate the histories that matter: 'statejump truss answers'",
+    ),
     "bounds_of_stop": Code(
         what="{part} may {change} at the reference temperature",
         cause="not yet: bounds across stops, plays and slack cables (class B)",
@@ -644,7 +661,8 @@ CODES: dict[str, Code] = {
     "bounds_without_friction": Code(
         what="no joint has friction", cause="every history returns to the same state", remedy="no bound is needed",
     ),
-    "bounds_bad_output": Code(cause="must be node:NAME or node:NAME.x, .y, .z with a free direction"),
+    "bounds_bad_output": Code(cause="must be node:NAME, node:NAME.x or node:NAME.xy with a free direction, or, of a "
+                              "surface, rms, rms:design, rms:rigid, tilt, zernike:K or point:X,Y,Z"),
     "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",
                                   remedy="give node:NAME"),
     "bounds_body": Code(
