@@ -176,3 +176,15 @@ def link(name: str, first: str, second: str, stiffness_Pa: float, area_m2: float
 def hottest(run: sj.Run, column: str) -> Any:
     """Return a column of a run at the largest temperature change."""
     return run[column][int(abs(run["temperature_change_K"]).argmax())]
+
+
+def chain(count: int, keys: dict[str, Any], prefix: str = "N") -> list[dict[str, Any]]:
+    """Return ``count`` beams with the same keys between the nodes prefix0, prefix1, ..."""
+    return [{"name": f"B{k}", "nodes": [f"{prefix}{k}", f"{prefix}{k + 1}"], "thermal_expansion_per_K": 0.0, **keys}
+            for k in range(count)]
+
+
+def section(young_Pa: float, area_m2: float, moment_m4: float, **more: Any) -> dict[str, Any]:
+    """Return the keys of a beam's section with the same moment about both axes."""
+    return {"young_modulus_Pa": young_Pa, "cross_section_area_m2": area_m2,
+            "second_moments_of_area_m4": [moment_m4, moment_m4], **more}
