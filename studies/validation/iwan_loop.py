@@ -28,7 +28,7 @@ def entry() -> Entry:
                  "temperature_change_max_K": None, "period_s": None, "return_to_reference": False},
         reduced={"increments_per_branch": 20}, output={"samples_per_cycle": 1100})
     run = case.reduced().at([float(k + 1) for k in range(len(PRINTED))])
-    force = np.abs(np.asarray(run["joint_force_N"])[:, 0]) * np.sign([value for _, value in PRINTED])
+    force = np.abs(np.asarray(run["iwan_force_N"])[:, 0]) * np.sign([value for _, value in PRINTED])
     return Entry(
         name="iwan_loop", part="Contact and laws", title="Four-parameter Iwan joint (tmdsimpy)", kind=OTHER_CODE,
         source="tmd-lab/tmdsimpy 17d5fc3f, tmdsimpy/nlforces/iwan4_element.py, run with kt = 2 MN/m, Fs = 300 N, χ = -0.5, β = 1 and "

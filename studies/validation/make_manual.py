@@ -26,7 +26,7 @@ from manual import ORDER, PARTS, Entry, Row, rounded  # noqa: E402
 HERE = Path(__file__).resolve().parent
 PAGES = HERE.parents[1] / "docs" / "validation" / "manual"
 VERDICTS = PAGES / "verdicts.json"
-NOT_ENTRIES = {"manual", "make_manual", "impact", "loops", "walking"}
+NOT_ENTRIES = {"manual", "make_manual", "bimaterial", "impact", "loops", "walking"}
 LARGEST_SKETCH = 40  # nodes
 
 
