@@ -42,12 +42,13 @@ class Strip:
         for layer, (young, alpha), side in (("upper", self.upper, 0.5), ("lower", self.lower, -0.5)):
             offset = [0.0, side * self.layer_m]
             beams += [{"name": f"{layer} {k}", "nodes": [f"N{k}", f"N{k + 1}"], "young_modulus_Pa": young,
-                       "shape": "rectangle", "dimensions_m": [self.layer_m, self.width_m], "thermal_expansion_per_K": alpha,
+                       "shape": "rectangle", "dimensions_m": [self.layer_m, self.width_m],
+                       "thermal_expansion_per_K": alpha,
                        "offset_first_m": offset, "offset_second_m": offset} for k in range(BEAMS)]
         return truss(self.name, nodes, self.change_K, beam=beams)
 
     def deflection_m(self, along_m: float | None = None) -> float:
-        """Return our deflection [m], upwards, of the end or at a distance from the clamp along the undeflected strip."""
+        """Return our deflection [m], upwards, of the end, or at a distance from the clamp on the straight strip."""
         at = np.asarray(hottest(self.case().reduced(), "position_m"))
         return float(at[-1, 1] if along_m is None else CubicSpline(at[:, 0], at[:, 1])(along_m))
 

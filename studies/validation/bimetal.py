@@ -14,16 +14,19 @@ def entry() -> Entry:
         source="S. Timoshenko, J. Opt. Soc. Am. 11 (1925) 233-255; numbers of example E.15 of Hyfeast "
         "(jrcho.github.io/Hyfeast): 3 L² Δα ΔT/(4 h) = 5.625 mm, its solid elements give 5.6755 mm",
         uncertainty="exact in linear theory; 0.9 % for the solid elements",
-        statement="Two bonded layers with different thermal expansion are heated. Find the deflection of the free end: a strip of "
-        "3 m with layers of 150 mm and equal moduli, and a strip of invar and copper of 200 mm with layers of 1 mm. Each layer "
-        "is a row of beams with offsets from common nodes.", case=unequal.case(), tolerance=2e-4, reason="solver entries",
+        statement="Two bonded layers with different thermal expansion are heated. Find the deflection of the free end: "
+        "a strip of 3 m with layers of 150 mm and equal moduli, and a strip of invar and copper of 200 mm with layers "
+        "of 1 mm. Each layer is a row of beams with offsets from common nodes.", case=unequal.case(), tolerance=2e-4,
+        reason="solver entries",
         model="The free strip is an arc, not a parabola, and its interface expands.",
         rows=[Row("equal moduli, 3 m", "mm", 5.625, 1e3 * strip.deflection_m(), theory=1e3 * strip.arc_m()),
-              Row("equal moduli, 3 m, solid elements of Hyfeast", "mm", 5.67551, 1e3 * strip.deflection_m(), tolerance=0.01),
-              Row("invar and copper, 200 mm", "mm", 500 * unequal.curvature_per_m * unequal.length_m**2, 1e3 * unequal.deflection_m(),
+              Row("equal moduli, 3 m, solid elements of Hyfeast", "mm", 5.67551, 1e3 * strip.deflection_m(),
+                  tolerance=0.01),
+              Row("invar and copper, 200 mm", "mm", 500 * unequal.curvature_per_m * unequal.length_m**2,
+                  1e3 * unequal.deflection_m(),
                   theory=1e3 * unequal.arc_m())],
-        verdict="Beams with offsets give Timoshenko's curvature. The solid elements differ by the clamp, which also holds the "
-        "strip's width and height.")
+        verdict="Beams with offsets give Timoshenko's curvature. The solid elements differ by the clamp, which also "
+        "holds the strip's width and height.")
 
 
 if __name__ == "__main__":

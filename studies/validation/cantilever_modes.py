@@ -43,13 +43,15 @@ def entry() -> Entry:
     better = (16 * once[1] - once[0]) / 15
     return Entry(
         name="cantilever_modes", part="Beams and frames", title="Natural frequencies of a Timoshenko cantilever",
-        kind=CLOSED_FORM, source="S. Timoshenko, Phil. Mag. 41 (1921) 744-746; the script solves the frequency equation",
+        kind=CLOSED_FORM, source="S. Timoshenko, Phil. Mag. 41 (1921) 744-746; the script solves the frequency "
+        "equation",
         uncertainty="exact",
-        statement="An aluminium cantilever of 1 m, 20 mm wide and 50 mm high, with shear deformation and rotary inertia. Find "
-        "its first three bending frequencies.", case=clamped(16), tolerance=2e-4,
+        statement="An aluminium cantilever of 1 m, 20 mm wide and 50 mm high, with shear deformation and rotary "
+        "inertia. Find its first three bending frequencies.", case=clamped(16), tolerance=2e-4,
         reason="solver entries; our value is extrapolated from 16, 32 and 64 beams",
         rows=[Row(f"frequency {k + 1}", "Hz", exact[k], float(better[k])) for k in range(3)]
-        + [Row(f"frequency {k + 1}, 64 beams", "Hz", exact[k], float(found[2][k]), refined=float(better[k]), tolerance=2e-3)
+        + [Row(f"frequency {k + 1}, 64 beams", "Hz", exact[k], float(found[2][k]), refined=float(better[k]),
+               tolerance=2e-3)
            for k in range(3)],
         verdict="The extrapolated frequencies agree; 64 beams with linear masses are 1e-3 off.")
 

@@ -14,16 +14,18 @@ def entry() -> Entry:
     ours = abs(strip.deflection_m(PLACE_M))
     return Entry(
         name="cold_steel_strip", part="Whole structures", title="Steel-aluminium strip in liquid nitrogen (measured)",
-        kind=MEASUREMENT, source="DoITPoMS, University of Cambridge, Thermal expansion and the bi-material strip, results2.php: "
-        "deflection 21 mm at 189 mm; results3.php: layers of 1 mm. Mean expansivities from 293 to 80 K: "
-        "GNIRS note SDN0013.02 (noao.edu), aluminium 6061 18.45e-6, carbon steel 8.78e-6, stainless steel 302 13.47e-6 1/K",
-        uncertainty="reading 0.5 mm. The kind of steel is not stated; with stainless steel the deflection is half of that with "
-        "carbon steel",
-        statement="A strip of steel and aluminium is clamped and immersed in liquid nitrogen. Find its deflection at 189 mm. "
-        "The steel is taken as carbon steel.", case=strip.case(), tolerance=0.3, reason="kind of steel and of aluminium",
+        kind=MEASUREMENT, source="DoITPoMS, University of Cambridge, Thermal expansion and the bi-material strip, "
+        "results2.php: deflection 21 mm at 189 mm; results3.php: layers of 1 mm. Mean expansivities from 293 to 80 K: "
+        "GNIRS note SDN0013.02 (noao.edu), aluminium 6061 18.45e-6, carbon steel 8.78e-6, stainless steel 302 13.47e-6 "
+        "1/K",
+        uncertainty="reading 0.5 mm. The kind of steel is not stated; with stainless steel the deflection is half of "
+        "that with carbon steel",
+        statement="A strip of steel and aluminium is clamped and immersed in liquid nitrogen. Find its deflection at "
+        "189 mm. The steel is taken as carbon steel.", case=strip.case(), tolerance=0.3, reason="kind of steel and of "
+        "aluminium",
         rows=[Row("deflection at 189 mm, carbon steel", "mm", 21.0, 1e3 * ours, low=14.7, high=27.3)],
-        verdict="The prediction for carbon steel is within the interval, at its upper end. The measured deflection lies between "
-        "the predictions for carbon and stainless steel.")
+        verdict="The prediction for carbon steel is within the interval, at its upper end. The measured deflection "
+        "lies between the predictions for carbon and stainless steel.")
 
 
 if __name__ == "__main__":

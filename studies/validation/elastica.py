@@ -52,11 +52,13 @@ def entry() -> Entry:
                  for k, what in enumerate(("tip x", "tip deflection"))]
     loads = np.linspace(0.05, 10.0, 60)
     return Entry(
-        name="elastica", part="Beams and frames", title="Cantilever under a large tip force (elastica)", kind=CLOSED_FORM,
-        source="K. E. Bisshopp and D. C. Drucker, Q. Appl. Math. 3 (1945) 272-275; the script evaluates the elliptic integrals",
+        name="elastica", part="Beams and frames", title="Cantilever under a large tip force (elastica)",
+        kind=CLOSED_FORM,
+        source="K. E. Bisshopp and D. C. Drucker, Q. Appl. Math. 3 (1945) 272-275; the script evaluates the elliptic "
+        "integrals",
         uncertainty="exact",
-        statement="A cantilever carries a dead force across its drawn axis, up to ten times E I/L². Find the position of its "
-        "tip.", case=loaded(10.0, 16), tolerance=2e-4, reason="solver entries",
+        statement="A cantilever carries a dead force across its drawn axis, up to ten times E I/L². Find the position "
+        "of its tip.", case=loaded(10.0, 16), tolerance=2e-4, reason="solver entries",
         model="None: the beam is almost inextensible.", rows=rows,
         picture=Picture("P L²/(E I)", "tip deflection [L]", [
             Curve("closed form", loads, [exact(load)[1] for load in loads]),

@@ -12,7 +12,7 @@ PLACES = np.array([(0.0, 0.0), (0.0, HEIGHT_M), (SPAN_M, HEIGHT_M), (SPAN_M, 0.0
 
 
 def linear() -> tuple[float, float]:
-    """Return shear force [N] and foot moment [N m] of linear beam theory, by stiffness matrices of the three members."""
+    """Return shear force [N] and foot moment [N m] of linear beam theory, by stiffness matrices of three members."""
     stiffness, load = np.zeros((12, 12)), np.zeros(12)
     bent = YOUNG_PA * MOMENT_M4
     for member in range(3):
@@ -50,10 +50,11 @@ def entry() -> Entry:
         name="heated_portal", part="Beams and frames", title="Portal frame with one heated column", kind=CLOSED_FORM,
         source="linear slope-deflection theory with axial strain; the script solves its six equations",
         uncertainty="exact in linear theory",
-        statement="A clamped portal of 6 m span and 4 m height; its left column is heated by 60 K. Find the vertical reaction "
-        "and the foot moment. One beam per member.", case=case, tolerance=2e-4, reason="solver entries",
+        statement="A clamped portal of 6 m span and 4 m height; its left column is heated by 60 K. Find the vertical "
+        "reaction and the foot moment. One beam per member.", case=case, tolerance=2e-4, reason="solver entries",
         model="None: the case has a thousandth of the heat, so that displacements are small.",
-        rows=[Row("vertical reaction", "N", reference[0], axial), Row("moment at the left foot", "N m", reference[1], moment)],
+        rows=[Row("vertical reaction", "N", reference[0], axial),
+              Row("moment at the left foot", "N m", reference[1], moment)],
         verdict="One beam per member gives the forces of linear theory.")
 
 

@@ -25,10 +25,12 @@ def entry() -> Entry:
     duration = 2 * deepest / SPEED * np.sqrt(np.pi) * gamma(1.4) / gamma(0.9)
     return Entry(
         name="hertz_impact", part="Contact and laws", title="Head-on impact of glass spheres (Chung and Ooi, test 1)",
-        kind=CLOSED_FORM, source="H. Hertz 1882 (K. L. Johnson, Contact Mechanics, 1985, section 11.4); Y. C. Chung and J. Y. Ooi, "
-        "Granul. Matter 13 (2011) 643-656, test 1: 10.70 kN and 40.5 µs, read from a figure", uncertainty="closed form exact; "
+        kind=CLOSED_FORM, source="H. Hertz 1882 (K. L. Johnson, Contact Mechanics, 1985, section 11.4); Y. C. Chung "
+        "and J. Y. Ooi, Granul. Matter 13 (2011) 643-656, test 1: 10.70 kN and 40.5 µs, read from a figure",
+        uncertainty="closed form exact; "
         "readings 1 %",
-        statement="Two glass spheres of 20 mm meet at 10 m/s each. Find the largest force and the duration of the contact.",
+        statement="Two glass spheres of 20 mm meet at 10 m/s each. Find the largest force and the duration of the "
+        "contact.",
         tolerance=2e-4, reason="closed form", rows=[
             Row("largest force, closed form", "kN", stiffness * deepest**1.5 / 1e3, force / 1e3),
             Row("duration, closed form", "µs", 1e6 * float(duration), 1e6 * float(times[-1])),

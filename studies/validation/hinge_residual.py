@@ -18,7 +18,8 @@ def entry() -> Entry:
     # Both beams turn back until their moment (E I/2 L) φ and that of the spring are held by friction.
     exact = friction / (spring + young * width * height**3 / 12 / (2 * length))
     return Entry(
-        name="hinge_residual", part="Beams and frames", title="Residual angle of a hinge with friction", kind=CLOSED_FORM,
+        name="hinge_residual", part="Beams and frames", title="Residual angle of a hinge with friction",
+        kind=CLOSED_FORM,
         source="linear beam theory: φ = M_c/(K + E I/2L); the script evaluates it", uncertainty="exact",
         statement="Two beams of 1 m between a clamp and a guided clamp meet in a hinge with a spring of 40 N m/rad and "
         "friction of 1 N m. A gradient of 20 K over 10 mm comes and goes. Find the angle that stays.",

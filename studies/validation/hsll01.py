@@ -41,11 +41,11 @@ def entry() -> Entry:
     exact = closing / (pi * RADIUS_M**3 / (2 * bent) + pi * RADIUS_M / (2 * YOUNG_PA * SIDE_M**2))
     return Entry(
         name="hsll01", part="Beams and frames", title="Two-hinged arch under a thermal gradient (AFNOR HSLL01/89)",
-        kind=OTHER_CODE, source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, HSLL01/89, as printed in "
-        "the Validation Manual of SCIA Engineer 26.0", uncertainty="four printed digits: 1e-4; the thermal expansion is printed with one digit, the results "
-        "need 1.1e-5/K",
-        statement="A half circle of 10 m radius and 120 x 120 mm stands on two pins. Its outer fibre is heated by 160 K, its "
-        "inner fibre by 40 K. Find the thrust and the moment at the crown.",
+        kind=OTHER_CODE, source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, HSLL01/89, "
+        "as printed in the Validation Manual of SCIA Engineer 26.0", uncertainty="four printed digits: 1e-4; the "
+        "thermal expansion is printed with one digit, the results need 1.1e-5/K",
+        statement="A half circle of 10 m radius and 120 x 120 mm stands on two pins. Its outer fibre is heated by 160 "
+        "K, its inner fibre by 40 K. Find the thrust and the moment at the crown.",
         case=arch(64), tolerance=2e-4, reason="solver entries; ours is extrapolated from 32 and 64 beams",
         model="None: the case has a thousandth of the heat, so that displacements are small.",
         rows=[Row("thrust", "N", 4792.0, better[0]), Row("moment at the crown", "N m", 47918.0, better[1]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Oblique impact of a sphere on a rigid wall by waveform relaxation: the driven contact gives the force, the force the slide."""
+"""Oblique impact of a sphere on a rigid wall by waveform relaxation: a slide gives the force, the force the slide."""
 from __future__ import annotations
 
 import attrs

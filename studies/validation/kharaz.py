@@ -12,11 +12,14 @@ from impact import Rebound, Sphere, rebound
 SPHERE = Sphere(380e9, 0.23, 4000.0, 2.5e-3, 0.092, 0.98)
 SPEED = 3.9  # m/s
 # Angle of incidence [degrees], reading; read from the figures of Chung and Ooi to about 0.5 % of the scales.
-RESTITUTION = [(2.24, 0.797), (4.22, 0.746), (9.84, 0.675), (20.22, 0.599), (30.36, 0.690), (39.54, 0.774), (49.60, 0.848),
+RESTITUTION = [(2.24, 0.797), (4.22, 0.746), (9.84, 0.675), (20.22, 0.599), (30.36, 0.690), (39.54, 0.774),
+               (49.60, 0.848),
                (71.07, 0.937), (79.23, 0.970), (85.17, 0.979)]
-SPIN = [(5.90, -134.9), (10.87, -261.2), (21.12, -573.7), (31.14, -612.2), (38.95, -595.1), (50.24, -449.5), (60.10, -375.7),
+SPIN = [(5.90, -134.9), (10.87, -261.2), (21.12, -573.7), (31.14, -612.2), (38.95, -595.1), (50.24, -449.5),
+        (60.10, -375.7),
         (69.96, -243.0), (78.56, -142.4), (84.32, -70.6)]
-REBOUND_ANGLE = [(2.10, 0.77), (3.94, 0.77), (9.72, -1.06), (20.31, -8.53), (30.16, -2.55), (39.12, 9.91), (49.51, 30.02),
+REBOUND_ANGLE = [(2.10, 0.77), (3.94, 0.77), (9.72, -1.06), (20.31, -8.53), (30.16, -2.55), (39.12, 9.91),
+                 (49.51, 30.02),
                  (59.90, 49.95), (70.46, 66.90), (78.86, 78.87), (84.78, 85.68)]
 
 
@@ -49,12 +52,14 @@ def entry() -> Entry:
     grid = [2.0, 4.0, 7.0, 10.0, 14.0, 18.0, 22.0, 26.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 86.0]
     return Entry(
         name="kharaz", part="Contact and laws", title="Measured oblique impacts of a sphere (Kharaz, Gorham, Salman)",
-        kind=MEASUREMENT, source="A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technol. 120 (2001) 281-291, as quoted by "
-        "Y. C. Chung and J. Y. Ooi, Granul. Matter 13 (2011) 643-656, test 4", uncertainty="readings of figures: 0.5 % of the scale; "
+        kind=MEASUREMENT, source="A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technol. 120 (2001) 281-291, as "
+        "quoted by Y. C. Chung and J. Y. Ooi, Granul. Matter 13 (2011) 643-656, test 4",
+        uncertainty="readings of figures: 0.5 % of the scale; "
         "scatter of the tests about 0.01 of the restitution",
         statement="Spheres of aluminium oxide, 5 mm, hit a thick anvil at 3.9 m/s and 2° to 85°. Friction 0.092 and "
         "normal restitution 0.98 were measured in the same tests. Find tangential restitution, spin and rebound angle.",
-        tolerance=0.04, reason="root mean square over the scale of the quantity: readings, scatter, anvil taken as rigid",
+        tolerance=0.04, reason="root mean square over the scale of the quantity: readings, scatter, anvil taken as "
+        "rigid",
         rows=[Row("tangential restitution, rms difference", "1", 0.0, of_restitution, scale=1.0),
               Row("tangential restitution with a spring instead of partial slip, rms", "1", 0.0, of_spring, scale=1.0,
                   tolerance=0.06),
@@ -63,8 +68,8 @@ def entry() -> Entry:
         picture=Picture("angle of incidence [°]", "tangential restitution", [
             Curve("partial slip", grid, [restitution(at) for at in grid]),
             Curve("measured", [at for at, _ in RESTITUTION], [value for _, value in RESTITUTION], ours=False)]),
-        verdict="Partial slip predicts the measured restitution, spin and rebound angle within their scatter; a spring under "
-        "Coulomb's limit misses the restitution by four times as much.", seconds=8.0)
+        verdict="Partial slip predicts the measured restitution, spin and rebound angle within their scatter; a spring "
+        "under Coulomb's limit misses the restitution by four times as much.")
 
 
 if __name__ == "__main__":

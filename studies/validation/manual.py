@@ -26,7 +26,7 @@ PARTS = (
 class Row:
     """One compared number.
 
-    :param theory: the value of the reference's formula with the named model difference removed; None: no such difference
+    :param theory: the value of the reference's formula without the named model difference; None: no such difference
     :param refined: our value on a finer discretisation, or extrapolated; None: the discretisation is exact
     :param tolerance: allowed relative difference, in place of the entry's
     :param low: with ``high``, the interval of a measurement, in place of a tolerance
@@ -67,8 +67,16 @@ class Row:
         """Return whether our value is in the interval, or model differences and tolerance explain it."""
         if self.low is not None and self.high is not None:
             return self.low <= self.ours <= self.high
-        allowed = tolerance if self.tolerance is None else self.tolerance
-        return math.isfinite(self.ours) and abs(self.total - self.model) <= allowed
+        return math.isfinite(self.ours) and self.unexplained <= self.allowed(tolerance)
+
+    def allowed(self, tolerance: float) -> float:
+        """Return the allowed relative difference, given the entry's."""
+        return tolerance if self.tolerance is None else self.tolerance
+
+    @property
+    def unexplained(self) -> float:
+        """Size of the difference that the named model difference does not explain."""
+        return abs(self.total - self.model)
 
     def _relative(self, difference: float) -> float:
         return difference / (self.scale or abs(self.reference) or 1.0)
@@ -97,7 +105,6 @@ class Picture:
 class Entry:
     """One page of the manual.
 
-    :param expected: False for an entry that fails; ``verdict`` then explains why
     :param case: the case that was run; None: no case file, for example a contact law alone
     :param model: the named model difference; empty: none
     """
@@ -117,7 +124,6 @@ class Entry:
     model: str = ""
     picture: Picture | None = None
     sketch: str = ""
-    seconds: float = 1.0  # about the time of the entry; entries above 3 s are not tests
 
     @property
     def passed(self) -> bool:
@@ -125,9 +131,22 @@ class Entry:
         return all(row.passes(self.tolerance) for row in self.rows)
 
     @property
+    def by_interval(self) -> bool:
+        """Whether intervals judge all rows."""
+        return all(row.low is not None for row in self.rows)
+
+    @property
+    def worst(self) -> Row:
+        """The row that is nearest to its tolerance, or farthest beyond; with intervals only, the largest difference."""
+        if self.by_interval:
+            return max(self.rows, key=lambda row: row.unexplained)
+        judged = [row for row in self.rows if row.low is None]
+        return max(judged, key=lambda row: row.unexplained / row.allowed(self.tolerance))
+
+    @property
     def largest(self) -> float:
-        """Largest relative difference that the named model difference does not explain."""
-        return max(abs(row.total - row.model) for row in self.rows)
+        """Difference of the worst row that the named model difference does not explain."""
+        return self.worst.unexplained
 
 
 def rounded(difference: float) -> str:
@@ -149,8 +168,10 @@ def show(entry: Entry) -> None:
 
 def truss(name: str, nodes: Sequence[dict[str, Any]], change_K: float = 1e-6, dimension: int = 2,
           **sections: Any) -> sj.Case:
-    """Return the case of a truss whose temperature rises by ``change_K`` and falls again."""
-    thermal = {"shape": "triangle", "temperature_change_max_K": change_K, "period_s": 1.0, **sections.pop("thermal", {})}
+    """Return the case of a truss whose temperature rises by ``change_K`` and falls again, or follows a given table."""
+    thermal = sections.pop("thermal", {})
+    if thermal.get("shape") != "table":
+        thermal = {"shape": "triangle", "temperature_change_max_K": change_K, "period_s": 1.0, **thermal}
     return sj.load({"case": {"name": name, "kind": "truss"}, "truss": {"dimension": dimension}, "node": list(nodes),
                     **sections, "thermal": thermal})
 

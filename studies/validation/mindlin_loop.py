@@ -47,11 +47,12 @@ def entry() -> Entry:
     found = loop(0.9)
     path = np.linspace(0, 0.9 * LIMIT_N, 40)
     return Entry(
-        name="mindlin_loop", part="Contact and laws", title="Tangential loop of a Hertz contact (Mindlin and Deresiewicz)",
-        kind=CLOSED_FORM, source="R. D. Mindlin and H. Deresiewicz, J. Appl. Mech. 20 (1953) 327-344: slide under constant normal "
-        "force, energy loss of a cycle", uncertainty="exact",
-        statement="A sphere is pressed by 10 N on a wall; friction 0.3. A tangential force cycles. Find the slide and the energy "
-        "loss of a cycle.", tolerance=2e-4, reason="steps of the driven contact", rows=rows,
+        name="mindlin_loop", part="Contact and laws", title="Tangential loop of a Hertz contact (Mindlin and "
+        "Deresiewicz)",
+        kind=CLOSED_FORM, source="R. D. Mindlin and H. Deresiewicz, J. Appl. Mech. 20 (1953) 327-344: slide under "
+        "constant normal force, energy loss of a cycle", uncertainty="exact",
+        statement="A sphere is pressed by 10 N on a wall; friction 0.3. A tangential force cycles. Find the slide and "
+        "the energy loss of a cycle.", tolerance=2e-4, reason="steps of the driven contact", rows=rows,
         picture=Picture("slide [nm]", "tangential force [N]", [
             Curve("law", 1e9 * found["slide_m"], 0.9 * LIMIT_N * np.interp(
                 np.linspace(0, 8, 4001), np.arange(9), [0, 1, 0, -1, 0, 1, 0, -1, 0])),

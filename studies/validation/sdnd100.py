@@ -27,11 +27,14 @@ def entry() -> Entry:
     half = pi / sqrt(STIFFNESS_N_PER_M / MASS_KG)
     moved = START_M - np.asarray(run.at([half * k for k in (1, 2, 3, 4)])["displacement_m"])[:, 1, 0]
     return Entry(
-        name="sdnd100", part="Dynamics with friction", title="Release of a rubbing pad (Code_Aster SDND100)", kind=CLOSED_FORM,
-        source="Code_Aster SDND100A, ralic/Code_Aster 135093b0, astest/sdnd100a.comm: u₀ - 2 k μ m g/K after k half periods",
+        name="sdnd100", part="Dynamics with friction", title="Release of a rubbing pad (Code_Aster SDND100)",
+        kind=CLOSED_FORM,
+        source="Code_Aster SDND100A, ralic/Code_Aster 135093b0, astest/sdnd100a.comm: u₀ - 2 k μ m g/K after k half "
+        "periods",
         uncertainty="exact; Code_Aster's test allows 1e-3 to 5e-3",
-        statement="A pad of 1 kg on a spring of 10 kN/m is released at 0.85 mm; dry friction of 1 N acts. Find its position "
-        "after each half period.", case=case, tolerance=2e-4, reason="solver entries, relative to the first amplitude",
+        statement="A pad of 1 kg on a spring of 10 kN/m is released at 0.85 mm; dry friction of 1 N acts. Find its "
+        "position after each half period.", case=case, tolerance=2e-4, reason="solver entries, relative to the first "
+        "amplitude",
         rows=[Row(f"position after {k + 1} half periods", "mm", 1e3 * sqrt(2) * printed, 1e3 * float(moved[k]),
                   scale=1e3 * START_M) for k, printed in enumerate(PRINTED)],
         verdict="Each half period loses twice the friction offset, as the closed form states.")

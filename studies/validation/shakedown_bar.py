@@ -38,14 +38,18 @@ def entry() -> Entry:
     scale = formula(2.0 * LIMIT_K)
     grid = np.linspace(0, 2.1, 40)
     return Entry(
-        name="shakedown_bar", part="Frictional shakedown", title="Shakedown of a bar with a rubbing block", kind=CLOSED_FORM,
-        source="Melan's theorem for friction with given normal forces: A. Klarbring, M. Ciavarella, J. R. Barber, Int. J. Solids "
-        "Struct. 44 (2007) 8355-8365; the script evaluates the limit E A α ΔT = 2 f and the heat of a steady cycle",
+        name="shakedown_bar", part="Frictional shakedown", title="Shakedown of a bar with a rubbing block",
+        kind=CLOSED_FORM,
+        source="Melan's theorem for friction with given normal forces: A. Klarbring, M. Ciavarella, J. R. Barber, Int. "
+        "J. Solids Struct. 44 (2007) 8355-8365; the script evaluates the limit E A α ΔT = 2 f and the heat of a steady "
+        "cycle",
         uncertainty="exact for small strain",
-        statement="A bar pushes a block with friction f while its temperature cycles between 0 and ΔT. Up to a limit the block "
-        "moves once and then rests for ever. Beyond the limit it slides to and fro in every cycle. Find the heat of the fifth "
-        "cycle.", case=cycled(1.2 * LIMIT_K), tolerance=2e-4, reason="solver entries, over the heat at twice the limit",
-        rows=[Row(f"heat at {fraction:g} of the limit", "µJ", 1e6 * formula(fraction * LIMIT_K), 1e6 * value, scale=1e6 * scale)
+        statement="A bar pushes a block with friction f while its temperature cycles between 0 and ΔT. Up to a limit "
+        "the block moves once and then rests for ever. Beyond the limit it slides to and fro in every cycle. Find the "
+        "heat of the fifth cycle.", case=cycled(1.2 * LIMIT_K), tolerance=2e-4, reason="solver entries, over the heat "
+        "at twice the limit",
+        rows=[Row(f"heat at {fraction:g} of the limit", "µJ", 1e6 * formula(fraction * LIMIT_K), 1e6 * value,
+                  scale=1e6 * scale)
               for fraction, value in found.items()],
         picture=Picture("temperature change over the limit", "heat of a cycle [µJ]", [
             Curve("closed form", grid, [1e6 * formula(float(at) * LIMIT_K) for at in grid]),

@@ -18,11 +18,13 @@ def entry() -> Entry:
     moved = run["displacement_m"][0] / SMALL
     force, moment = run["beam_force_first_N"][0] / SMALL, run["beam_moment_first_N_m"][0] / SMALL
     return Entry(
-        name="ssll05", part="Beams and frames", title="Cantilevers joined by a rigid body (AFNOR SSLL05/89)", kind=CLOSED_FORM,
-        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL05/89, as printed in the Validation "
-        "Manual of SCIA Engineer 26.0", uncertainty="exact for beams that do not stretch",
-        statement="Two cantilevers of 2 m, 0.2 m apart, are joined at their tips by a rigid body. A force of 1 kN acts on one tip. "
-        "Find tip displacement, shear force and moment.", case=case, tolerance=2e-4, reason="solver entries",
+        name="ssll05", part="Beams and frames", title="Cantilevers joined by a rigid body (AFNOR SSLL05/89)",
+        kind=CLOSED_FORM,
+        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL05/89, as printed in the "
+        "Validation Manual of SCIA Engineer 26.0", uncertainty="exact for beams that do not stretch",
+        statement="Two cantilevers of 2 m, 0.2 m apart, are joined at their tips by a rigid body. A force of 1 kN acts "
+        "on one tip. Find tip displacement, shear force and moment.", case=case, tolerance=2e-4,
+        reason="solver entries",
         rows=[Row("tip displacement", "mm", -125.0, 1e3 * float(moved[1, 1])),
               Row("shear force of the upper beam", "kN", 0.5, abs(float(force[0, 1])) / 1e3),
               Row("moment at the upper clamp", "kN m", 0.5, abs(float(moment[0, 2])) / 1e3)],

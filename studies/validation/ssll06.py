@@ -34,10 +34,11 @@ def entry() -> Entry:
     expected = (379.1, 241.7, 165.4)
     return Entry(
         name="ssll06", part="Beams and frames", title="Quarter circle in its plane (AFNOR SSLL06/89)", kind=CLOSED_FORM,
-        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL06/89, as printed in the Validation "
-        "Manual of SCIA Engineer 26.0", uncertainty="four printed digits: 2e-4; the loads are printed with one digit as 0.01 kN, the results need 10 N, 5 N, 8 N m",
-        statement="A tube bent to a quarter circle of 3 m is clamped at one end. Forces of 10 N along x and 5 N along y and a "
-        "moment of 8 N m act at the other. Find its displacements and rotation.", case=bent(20), tolerance=4e-4,
+        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL06/89, as printed in the "
+        "Validation Manual of SCIA Engineer 26.0", uncertainty="four printed digits: 2e-4; the loads are printed with "
+        "one digit as 0.01 kN, the results need 10 N, 5 N, 8 N m",
+        statement="A tube bent to a quarter circle of 3 m is clamped at one end. Forces of 10 N along x and 5 N along "
+        "y and a moment of 8 N m act at the other. Find its displacements and rotation.", case=bent(20), tolerance=4e-4,
         reason="the printed digits; our value is extrapolated from 10 and 20 beams",
         rows=[Row(what, unit, expected[k], float(better[k])) for k, (what, unit) in enumerate(
             (("displacement x", "mm"), ("displacement y", "mm"), ("rotation", "mrad")))]

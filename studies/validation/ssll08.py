@@ -33,13 +33,15 @@ def entry() -> Entry:
     coarse, fine = moved(12), moved(24)
     better = fine + (fine - coarse) / 3
     expected = (53.912, -19.206, -30.774)
-    names = (("displacement x of the roller", "mm"), ("displacement y of the crown", "mm"), ("rotation at the pin", "mrad"))
+    names = (("displacement x of the roller", "mm"), ("displacement y of the crown", "mm"),
+             ("rotation at the pin", "mrad"))
     return Entry(
-        name="ssll08", part="Beams and frames", title="Half circle on a pin and a roller (AFNOR SSLL08/89)", kind=CLOSED_FORM,
-        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL08/89, as printed in the Validation "
-        "Manual of SCIA Engineer 26.0", uncertainty="the reference is for beams that do not stretch: 4e-4",
-        statement="A tube bent to a half circle of 1 m stands on a pin and a roller. A force of 100 N presses its crown. Find the "
-        "displacements.", case=arch(24), tolerance=5e-4, reason="beams of the reference do not stretch",
+        name="ssll08", part="Beams and frames", title="Half circle on a pin and a roller (AFNOR SSLL08/89)",
+        kind=CLOSED_FORM,
+        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL08/89, as printed in the "
+        "Validation Manual of SCIA Engineer 26.0", uncertainty="the reference is for beams that do not stretch: 4e-4",
+        statement="A tube bent to a half circle of 1 m stands on a pin and a roller. A force of 100 N presses its "
+        "crown. Find the displacements.", case=arch(24), tolerance=5e-4, reason="beams of the reference do not stretch",
         rows=[Row(what, unit, expected[k], float(better[k])) for k, (what, unit) in enumerate(names)],
         verdict="Straight beams on the arc converge to the reference as the square of their length.")
 

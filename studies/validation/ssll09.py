@@ -19,8 +19,8 @@ def entry() -> Entry:
     run = case.reduced()
     return Entry(
         name="ssll09", part="Statics and thermal bars", title="Plane truss with nodal load (AFNOR SSLL09/89)",
-        kind=CLOSED_FORM, source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL09/89, as printed in "
-        "the Validation Manual of SCIA Engineer 26.0", uncertainty="exact in linear theory",
+        kind=CLOSED_FORM, source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL09/89, "
+        "as printed in the Validation Manual of SCIA Engineer 26.0", uncertainty="exact in linear theory",
         statement="Two steel bars of 4.5 m and 3 cm² at 30° carry 21 kN where they meet. Find displacement and stress.",
         case=case, tolerance=2e-4, reason="solver entries",
         model="None: the case has a thousandth of the load, so that displacements are small.",

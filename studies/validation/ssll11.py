@@ -19,9 +19,11 @@ def entry() -> Entry:
     rows = [Row(f"displacement {axis} of {name}", "mm", expected, float(moved["ABCD".index(name), place]))
             for name, both in EXPECTED.items() for place, (axis, expected) in enumerate(zip("xy", both))]
     return Entry(
-        name="ssll11", part="Statics and thermal bars", title="Plane truss of four bars (AFNOR SSLL11/89)", kind=CLOSED_FORM,
-        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL11/89, as printed in the Validation "
-        "Manual of SCIA Engineer 26.0", uncertainty="six printed digits; SCIA Engineer itself differs by 3e-4",
+        name="ssll11", part="Statics and thermal bars", title="Plane truss of four bars (AFNOR SSLL11/89)",
+        kind=CLOSED_FORM,
+        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL11/89, as printed in the "
+        "Validation Manual of SCIA Engineer 26.0", uncertainty="six printed digits; SCIA Engineer itself differs by "
+        "3e-4",
         statement="A truss of four bars carries 9.81 kN at its tip D. Find the displacements of C and D.",
         case=case, tolerance=2e-4, reason="solver entries",
         model="None: the case has a thousandth of the load, so that displacements are small.",

@@ -15,7 +15,8 @@ SMALL = 1e-3  # the reference is linear: loads, settlements and heat are scaled,
 PLACES = {"A": (0, 0), "N02": (5, 0), "N03": (15, 0), "B": (20, -4), "D": (25, 0), "C": (35, 0), "N01": (0, 4),
           "E": (10, 4), "N04": (20, 4), "F": (30, 4)}
 # Number of the bar in Code_Aster: its nodes. Bars with even numbers and M11 are thick.
-BARS = {1: "A N01", 2: "A N02", 3: "N01 N02", 4: "N01 E", 5: "N02 E", 6: "N02 N03", 7: "E N03", 8: "E N04", 9: "N03 N04",
+BARS = {1: "A N01", 2: "A N02", 3: "N01 N02", 4: "N01 E", 5: "N02 E", 6: "N02 N03", 7: "E N03", 8: "E N04",
+        9: "N03 N04",
         10: "N03 B", 11: "B N04", 12: "B D", 13: "N04 D", 14: "N04 F", 15: "D F", 16: "D C", 17: "F C"}
 SLOPE = radians(30)
 # Support: direction in which it holds, settlement along this direction [m].
@@ -83,7 +84,8 @@ def entry() -> Entry:
         force = -np.asarray(hottest(run, "links/axial_force_N")) / SMALL
         moved.append(float(hottest(run, "displacement_m")[4, 1]) / SMALL * 1e3)
         last.append(float(force[11]) / 1e3)
-        rows.append(Row(f"{load}: largest difference from linear theory", "N", 0.0, float(np.abs(force[:17] - theory).max()),
+        rows.append(Row(f"{load}: largest difference from linear theory", "N", 0.0,
+                        float(np.abs(force[:17] - theory).max()),
                         scale=float(np.abs(theory).max()), tolerance=2e-4))
         rows += [Row(f"{load}: force of M{number:02}", "N", value, float(force[number - 1]))
                  for number, value in expected.items()]
@@ -91,17 +93,19 @@ def entry() -> Entry:
     rows += [Row("150 K, forces and settlements: force of M12", "kN", 43.63, summed[0], tolerance=3e-4),
              Row("150 K, forces and settlements: displacement y of D", "mm", -16.18, summed[1], tolerance=4e-4)]
     return Entry(
-        name="ssll12", part="Statics and thermal bars", title="Truss under heat, forces and settlements (AFNOR SSLL12/89)",
-        kind=OTHER_CODE, source="Code_Aster SSLL12A, ralic/Code_Aster 04e90bcc, astest/ssll12a.comm (reference LAREDO, after "
-        "AFNOR SSLL12/89); geometry and sum of the loads: Validation Manual of SCIA Engineer 26.0",
+        name="ssll12", part="Statics and thermal bars", title="Truss under heat, forces and settlements (AFNOR "
+        "SSLL12/89)",
+        kind=OTHER_CODE, source="Code_Aster SSLL12A, ralic/Code_Aster 04e90bcc, astest/ssll12a.comm (reference LAREDO, "
+        "after AFNOR SSLL12/89); geometry and sum of the loads: Validation Manual of SCIA Engineer 26.0",
         uncertainty="5e-3 for Code_Aster, four printed digits for SCIA Engineer",
-        statement="A truss on three supports, once statically indeterminate; one support slides on a slope of 30°. Find the "
-        "bar forces if it is heated by 30 K, if two forces act, and if the supports settle by 20, 30 and 15 mm.",
+        statement="A truss on three supports, once statically indeterminate; one support slides on a slope of 30°. "
+        "Find the bar forces if it is heated by 30 K, if two forces act, and if the supports settle by 20, 30 and 15 "
+        "mm.",
         case=case("heated by 30 K"), tolerance=5e-3,
         reason="that of Code_Aster's own test; its printed forces miss equilibrium at the joints by 6e-4",
         model="None: the case has a thousandth of the loads, so that displacements are small.", rows=rows,
-        verdict="Our forces are those of linear theory and of SCIA Engineer's sum of the three loads. The forces printed by "
-        "Code_Aster differ by up to 0.5 %, as its test allows.")
+        verdict="Our forces are those of linear theory and of SCIA Engineer's sum of the three loads. The forces "
+        "printed by Code_Aster differ by up to 0.5 %, as its test allows.")
 
 
 if __name__ == "__main__":

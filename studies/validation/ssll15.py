@@ -23,7 +23,8 @@ def beam(count: int) -> sj.Case:
                   force_N=[0.0, -LOAD_N * SMALL if k in (0, count // 2, count) else 0.0]) for k in range(count + 1)]
     nodes += [node(f"G{k}", k * pitch, -GROUND_M, fixed="xy") for k in range(count + 1)]
     springs = [{"name": f"S{k}", "nodes": [f"G{k}", f"N{k}"], "free_length_m": GROUND_M,
-                "stiffness_N_per_m": FOUNDATION_PA * pitch * (0.5 if k in (0, count) else 1.0)} for k in range(count + 1)]
+                "stiffness_N_per_m": FOUNDATION_PA * pitch * (0.5 if k in (0, count) else 1.0)}
+               for k in range(count + 1)]
     return truss("ssll15", nodes, beam=chain(count, section(YOUNG_PA, 3.4641e-2, MOMENT_M4)), spring=springs)
 
 
@@ -38,16 +39,20 @@ def found(count: int) -> np.ndarray:
 def entry() -> Entry:
     coarse, fine = found(20), found(40)
     better = np.abs(fine + (fine - coarse) / 3)
-    names = (("deflection of the middle", "mm", 6.844), ("deflection of the end", "mm", 7.854), ("rotation of the end", "mrad", 0.706),
+    names = (("deflection of the middle", "mm", 6.844), ("deflection of the end", "mm", 7.854),
+             ("rotation of the end", "mrad", 0.706),
              ("moment in the middle", "kN m", 5.759))
     return Entry(
-        name="ssll15", part="Beams and frames", title="Beam on an elastic foundation (AFNOR SSLL15/89)", kind=CLOSED_FORM,
-        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL15/89, as printed in the Validation "
-        "Manual of SCIA Engineer 26.0", uncertainty="three to four printed digits: 7e-4",
-        statement="A free beam of 4.967 m lies on an elastic foundation. Forces of 10 kN act at its ends and in its middle. Find "
-        "deflections, rotation and moment. Springs at the nodes are the foundation.", case=beam(20), tolerance=1e-3,
-        reason="the printed digits; ours is extrapolated from 20 and 40 beams. The foundation of the reference is not printed: it "
-        "follows from the length, π/(2 β)", rows=[Row(what, unit, value, float(better[k])) for k, (what, unit, value) in enumerate(names)],
+        name="ssll15", part="Beams and frames", title="Beam on an elastic foundation (AFNOR SSLL15/89)",
+        kind=CLOSED_FORM,
+        source="AFNOR, Guide de validation des progiciels de calcul de structures, 1990, SSLL15/89, as printed in the "
+        "Validation Manual of SCIA Engineer 26.0", uncertainty="three to four printed digits: 7e-4",
+        statement="A free beam of 4.967 m lies on an elastic foundation. Forces of 10 kN act at its ends and in its "
+        "middle. Find deflections, rotation and moment. Springs at the nodes are the foundation.", case=beam(20),
+        tolerance=1e-3,
+        reason="the printed digits; ours is extrapolated from 20 and 40 beams. The foundation of the reference is not "
+        "printed: it follows from the length, π/(2 β)",
+        rows=[Row(what, unit, value, float(better[k])) for k, (what, unit, value) in enumerate(names)],
         verdict="Deflections and moment agree with the printed digits.")
 
 

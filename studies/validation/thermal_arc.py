@@ -33,7 +33,8 @@ def entry() -> Entry:
         name="thermal_arc", part="Beams and frames", title="Free thermal arc", kind=CLOSED_FORM,
         source="a free beam of constant thermal curvature κ is an arc of radius 1/κ (Timoshenko 1925)",
         uncertainty="exact",
-        statement="A cantilever of 1 m bends by a temperature gradient with the curvature 1/m. Find its tip: (sin 1, 1 - cos 1).",
+        statement="A cantilever of 1 m bends by a temperature gradient with the curvature 1/m. Find its tip: (sin 1, 1 "
+        "- cos 1).",
         case=heated(8), tolerance=2e-4, reason="solver entries",
         rows=[Row("tip x", "m", exact[0], fine[0], refined=fine[0] + (fine[0] - coarse[0]) / 15),
               Row("tip y", "m", exact[1], fine[1], refined=fine[1] + (fine[1] - coarse[1]) / 15),

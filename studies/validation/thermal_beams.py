@@ -19,7 +19,8 @@ CLAMPED = {"clamped": True}
 def beam(first: dict[str, object], last: dict[str, object]) -> sj.Case:
     """Return the beam of 6 m with two supports; its middle is a node."""
     return truss("thermal_beams", [node("A", 0.0, 0.0, **first), node("M", 3.0, 0.0), node("C", 6.0, 0.0, **last)],
-                 CHANGE_K, beam=[{"name": "AM", "nodes": ["A", "M"], **WARM}, {"name": "MC", "nodes": ["M", "C"], **WARM}])
+                 CHANGE_K, beam=[{"name": "AM", "nodes": ["A", "M"], **WARM},
+                                 {"name": "MC", "nodes": ["M", "C"], **WARM}])
 
 
 def entry() -> Entry:
@@ -28,11 +29,12 @@ def entry() -> Entry:
     arc = (1 - cos(3 * CURVATURE)) / CURVATURE, (1 - cos(6 * CURVATURE)) / CURVATURE
     return Entry(
         name="thermal_beams", part="Beams and frames", title="Beams under a temperature gradient", kind=CLOSED_FORM,
-        source="S. Timoshenko, Strength of Materials I, 3rd ed., chapter on thermal stresses in beams; the script evaluates "
-        "the formulas κ = α ΔT/h, w = κ L²/8 and κ L²/2, M = E I κ, R = 3 E I κ/(2 L)",
+        source="S. Timoshenko, Strength of Materials I, 3rd ed., chapter on thermal stresses in beams; the script "
+        "evaluates the formulas κ = α ΔT/h, w = κ L²/8 and κ L²/2, M = E I κ, R = 3 E I κ/(2 L)",
         uncertainty="exact in linear theory",
-        statement="A beam of 6 m with E I = 60 MN m² and height 0.4 m is 20 K warmer on one side. Find the sag between simple "
-        "supports, the tip of a cantilever, the moment between clamps, and the reaction of a propped cantilever.",
+        statement="A beam of 6 m with E I = 60 MN m² and height 0.4 m is 20 K warmer on one side. Find the sag between "
+        "simple supports, the tip of a cantilever, the moment between clamps, and the reaction of a propped "
+        "cantilever.",
         case=beam(CLAMPED, ROLLER), tolerance=2e-4, reason="solver entries",
         model="A free beam is an arc, not a parabola: terms of the order (κ L)² = 1.3e-5.",
         rows=[Row("simply supported: sag", "mm", 1e3 * CURVATURE * 36 / 8,

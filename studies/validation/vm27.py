@@ -21,10 +21,11 @@ def entry() -> Entry:
     ours = YOUNG_PA * (free - LENGTH_M - GAP_M) / free / PSI
     return Entry(
         name="vm27", part="Statics and thermal bars", title="Thermal expansion to close a gap (ANSYS VM27)",
-        kind=CLOSED_FORM, source="C. O. Harris, Introduction to Stress Analysis, 1959, p. 58, problem 8, of which ANSYS VM27 "
-        "and VM64 are copies; the script evaluates E (α ΔT - gap/length)", uncertainty="exact in linear theory",
-        statement="An aluminium bar of 3 in stands 0.002 in from a rigid wall. It is heated by 100 °F. Find the stress along "
-        "its axis.", case=case, tolerance=2e-4, reason="solver entries",
+        kind=CLOSED_FORM, source="C. O. Harris, Introduction to Stress Analysis, 1959, p. 58, problem 8, of which "
+        "ANSYS VM27 and VM64 are copies; the script evaluates E (α ΔT - gap/length)", uncertainty="exact in linear "
+        "theory",
+        statement="An aluminium bar of 3 in stands 0.002 in from a rigid wall. It is heated by 100 °F. Find the stress "
+        "along its axis.", case=case, tolerance=2e-4, reason="solver entries",
         model="The stress is E times the strain over the expanded length l (1 + α ΔT) instead of l.",
         rows=[Row("axial stress", "psi", linear, stress, theory=ours)],
         verdict="The difference is exactly that of the length which the strain refers to.")

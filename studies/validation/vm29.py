@@ -42,15 +42,19 @@ def entry() -> Entry:
     drive = WEIGHT_N * sin(SLOPE)
     up, down = limit_N(0.0, NORMAL_N), limit_N(0.0, -NORMAL_N)
     return Entry(
-        name="vm29", part="Statics and thermal bars", title="Block at the limit of friction (ANSYS VM29)", kind=CLOSED_FORM,
-        source="F. P. Beer and E. R. Johnston, Vector Mechanics for Engineers, p. 283 (ANSYS VM29: friction on a support block); the "
-        "script evaluates μ W cos θ", uncertainty="exact",
-        statement="A block of 100 lb rests on a slope of 20°; the friction coefficient is 0.3. Find the forces along the slope "
-        "between which it does not move, its weight included.", case=case(0.999 * FRICTION * NORMAL_N), tolerance=2e-4,
+        name="vm29", part="Statics and thermal bars", title="Block at the limit of friction (ANSYS VM29)",
+        kind=CLOSED_FORM,
+        source="F. P. Beer and E. R. Johnston, Vector Mechanics for Engineers, p. 283 (ANSYS VM29: friction on a "
+        "support block); the script evaluates μ W cos θ", uncertainty="exact",
+        statement="A block of 100 lb rests on a slope of 20°; the friction coefficient is 0.3. Find the forces along "
+        "the slope between which it does not move, its weight included.", case=case(0.999 * FRICTION * NORMAL_N),
+        tolerance=2e-4,
         reason="bisection to 1e-7 of the normal force",
-        rows=[Row("largest push up the slope, less its weight", "lb", (drive + FRICTION * NORMAL_N) / POUND, (drive + up) / POUND),
+        rows=[Row("largest push up the slope, less its weight", "lb", (drive + FRICTION * NORMAL_N) / POUND,
+                  (drive + up) / POUND),
               Row("smallest push that holds it", "lb", (drive - FRICTION * NORMAL_N) / POUND, (drive + down) / POUND)],
-        verdict="The solver holds the block up to the limit of friction and refuses larger pushes, because nothing holds it then.")
+        verdict="The solver holds the block up to the limit of friction and refuses larger pushes, because nothing "
+        "holds it then.")
 
 
 if __name__ == "__main__":

@@ -29,8 +29,8 @@ def entry() -> Entry:
     copper, steel = exact()
     return Entry(
         name="vm3", part="Statics and thermal bars", title="Thermally loaded support structure (ANSYS VM3)",
-        kind=CLOSED_FORM, source="S. Timoshenko, Strength of Materials I, 3rd ed., p. 30, problem 9; ANSYS Mechanical APDL "
-        "Verification Manual, VM3", uncertainty="three digits are printed: 3e-5",
+        kind=CLOSED_FORM, source="S. Timoshenko, Strength of Materials I, 3rd ed., p. 30, problem 9; ANSYS Mechanical "
+        "APDL Verification Manual, VM3", uncertainty="three digits are printed: 3e-5",
         statement="Two copper wires and a steel wire, 20 in long and 0.1 in² each, carry 4000 lb together. They are "
         "heated by 10 °F. Find the stresses.",
         case=case, tolerance=2e-4, reason="solver entries; the printed digits allow 3e-5",

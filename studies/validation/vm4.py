@@ -33,14 +33,15 @@ def entry() -> Entry:
     stress = -float(run["links/axial_force_N"][0, 0]) / AREA_M2 / PSI
     theory = exact()
     return Entry(
-        name="vm4", part="Statics and thermal bars", title="Deflection of a hinged support (ANSYS VM4)", kind=CLOSED_FORM,
-        source="S. Timoshenko, Strength of Materials I, 3rd ed., p. 10, problem 2; targets of VM4 in ansys/pymapdl 28864918, "
-        "examples/06-verif-manual/vm-004", uncertainty="exact in linear theory",
-        statement="Two steel bars of 15 ft and 0.5 in² hang from two hinges at 30° below the horizontal. A load of 5000 lb "
-        "acts where they meet. Find its deflection and the stress.",
+        name="vm4", part="Statics and thermal bars", title="Deflection of a hinged support (ANSYS VM4)",
+        kind=CLOSED_FORM,
+        source="S. Timoshenko, Strength of Materials I, 3rd ed., p. 10, problem 2; targets of VM4 in ansys/pymapdl "
+        "28864918, examples/06-verif-manual/vm-004", uncertainty="exact in linear theory",
+        statement="Two steel bars of 15 ft and 0.5 in² hang from two hinges at 30° below the horizontal. A load of "
+        "5000 lb acts where they meet. Find its deflection and the stress.",
         case=case, tolerance=2e-4, reason="solver entries",
-        model="The reference is linear. Our bars are in equilibrium in the displaced geometry; the exact solution of the "
-        "displaced truss is the theory.",
+        model="The reference is linear. Our bars are in equilibrium in the displaced geometry; the exact solution of "
+        "the displaced truss is the theory.",
         rows=[Row("deflection", "in", 0.12, deflection, theory=theory[0]),
               Row("stress", "psi", 10000, stress, theory=theory[1])],
         verdict="The difference to linear theory is that of the displaced geometry.")

@@ -34,24 +34,28 @@ def entry() -> Entry:
                    stress_free_length_m=length + START_M, mass_kg=1e-9)],
         slider=[{"name": "S", "nodes": ["M"], "axis": [1.0, 0.0], "friction_coefficient": 0.1,
                  "normal_force_N": FRICTION_N / 0.1}],
-        thermal={"period_s": 1.2}, motion={"start": "drawn", "steps_per_cycle": 96000}, output={"samples_per_cycle": 1200},
+        thermal={"period_s": 1.2}, motion={"start": "drawn", "steps_per_cycle": 96000},
+        output={"samples_per_cycle": 1200},
         dem={"link_damping_ratio": 0.0})
     run = case.reduced(dynamic=True)
     # The spring is relaxed at +1 in: our displacement from there is the mirrored one of the reference.
     moved = START_M - np.asarray(run["displacement_m"])[:, 1, 0]
     times = np.asarray(run["time_s"])
     reference = np.array([exact(float(at)) for at in times])
-    at = {label: int(abs(times - value).argmin()) for label, value in (("0.09 s", 0.09), ("0.102 s", 0.102), ("0.183 s", 0.183))}
+    at = {label: int(abs(times - value).argmin()) for label,
+          value in (("0.09 s", 0.09), ("0.102 s", 0.102), ("0.183 s", 0.183))}
     rows = [Row(f"displacement at {label}", "in", exact(float(times[k])) / INCH, float(moved[k]) / INCH, scale=1.0)
             for label, k in at.items()]
     rows += [Row("rest position", "in", float(reference[-1]) / INCH, float(moved[-1]) / INCH, scale=1.0),
-             Row("largest difference of the whole motion", "in", 0.0, float(abs(moved - reference).max()) / INCH, scale=1.0)]
+             Row("largest difference of the whole motion", "in", 0.0, float(abs(moved - reference).max()) / INCH,
+                 scale=1.0)]
     return Entry(
-        name="vm73", part="Dynamics with friction", title="Free vibration with Coulomb damping (ANSYS VM73)", kind=CLOSED_FORM,
-        source="F. S. Tse, I. E. Morse, R. T. Hinkle, Mechanical Vibrations, 1963, p. 175, case 1 (ANSYS VM73); the script "
-        "evaluates the half cosines", uncertainty="exact",
-        statement="A weight of 10 lb on a spring of 30 lb/in is released at 1 in. Dry friction of 1.875 lb acts. Find the motion "
-        "and where it stops.", case=case, tolerance=2e-4, reason="solver entries", rows=rows,
+        name="vm73", part="Dynamics with friction", title="Free vibration with Coulomb damping (ANSYS VM73)",
+        kind=CLOSED_FORM,
+        source="F. S. Tse, I. E. Morse, R. T. Hinkle, Mechanical Vibrations, 1963, p. 175, case 1 (ANSYS VM73); the "
+        "script evaluates the half cosines", uncertainty="exact",
+        statement="A weight of 10 lb on a spring of 30 lb/in is released at 1 in. Dry friction of 1.875 lb acts. Find "
+        "the motion and where it stops.", case=case, tolerance=2e-4, reason="solver entries", rows=rows,
         picture=Picture("time [s]", "displacement [in]", [
             Curve("ours", times, moved / INCH), Curve("closed form", times[::30], reference[::30] / INCH, ours=False)]),
         verdict="The motion follows the half cosines and stops where friction holds the spring.")

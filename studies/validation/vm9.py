@@ -32,19 +32,19 @@ def entry() -> Entry:
     energy = 100 * float(run["elastic_energy_J"][0])
     return Entry(
         name="vm9", part="Statics and thermal bars", title="Large lateral deflection of unequal springs (ANSYS VM9)",
-        kind=CLOSED_FORM, source="G. N. Vanderplaats, Numerical Optimization Techniques, 1984, p. 72, ex. 3-1; targets of VM9 "
-        "in ansys/pymapdl 0d7947b6, examples/06-verif-manual/vm-009",
+        kind=CLOSED_FORM, source="G. N. Vanderplaats, Numerical Optimization Techniques, 1984, p. 72, ex. 3-1; targets "
+        "of VM9 in ansys/pymapdl 0d7947b6, examples/06-verif-manual/vm-009",
         uncertainty="the printed targets miss the least energy by 2.4e-4; the script minimises the energy itself",
-        statement="Two springs in line, of 8 and 1 N/cm and 10 cm each, carry a force of 5√2 N at 45° where they meet. At "
-        "rest the springs have no force, so the lateral stiffness is zero. Find displacement and strain energy.",
+        statement="Two springs in line, of 8 and 1 N/cm and 10 cm each, carry a force of 5√2 N at 45° where they meet. "
+        "At rest the springs have no force, so the lateral stiffness is zero. Find displacement and strain energy.",
         case=case, tolerance=2e-4, reason="solver entries",
         rows=[Row("displacement x", "cm", 8.631, float(moved[0]), tolerance=3e-4),
               Row("displacement y", "cm", 4.533, float(moved[1]), tolerance=3e-4),
               Row("strain energy", "N cm", 24.01, energy),
               Row("displacement x, energy minimised", "cm", float(exact[0]), float(moved[0]), tolerance=1e-6),
               Row("displacement y, energy minimised", "cm", float(exact[1]), float(moved[1]), tolerance=1e-6)],
-        verdict="The solver finds the equilibrium of least energy although the truss starts singular. The printed targets are "
-        "2.4e-4 from it.")
+        verdict="The solver finds the equilibrium of least energy although the truss starts singular. The printed "
+        "targets are 2.4e-4 from it.")
 
 
 if __name__ == "__main__":

@@ -58,11 +58,12 @@ def entry() -> Entry:
         name="von_mises", part="Statics and thermal bars", title="Limit load of the von Mises truss", kind=CLOSED_FORM,
         source="R. von Mises, Z. angew. Math. Mech. 3 (1923) 406-422; the script evaluates the closed form",
         uncertainty="exact",
-        statement="Two bars of axial rigidity 1280 MN meet at the apex of an arch of half span 5 m and rise 1 m. A vertical "
-        "load presses the apex. Find the load at which the arch snaps through.",
+        statement="Two bars of axial rigidity 1280 MN meet at the apex of an arch of half span 5 m and rise 1 m. A "
+        "vertical load presses the apex. Find the load at which the arch snaps through.",
         case=loaded(0.5 * most), tolerance=1e-6, reason="bisection to 1e-7 of the load",
         rows=[Row("limit load", "kN", most / 1e3, low / 1e3),
-              Row("load at our deflection, half of the limit load", "kN", load_N(half) / 1e3, 0.5 * most / 1e3, tolerance=1e-9)],
+              Row("load at our deflection, half of the limit load", "kN", load_N(half) / 1e3, 0.5 * most / 1e3,
+                  tolerance=1e-9)],
         picture=Picture("deflection [m]", "load [kN]", [
             Curve("ours", ours, [load / 1e3 for load in loads], ours=False),
             Curve("closed form", path, [load_N(value) / 1e3 for value in path])]),

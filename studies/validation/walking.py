@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of blocks that walk under temperature cycles: the case, its closed form for blocks and for a continuous sheet."""
+"""Rows of blocks that walk under temperature cycles: the case, the closed forms of blocks and of a continuous sheet."""
 from __future__ import annotations
 
 import attrs
@@ -60,8 +60,10 @@ class Walk:
         """Return the case."""
         count, pitch = self.blocks, self.length_m / self.blocks
         nodes = [node(f"N{k}", (k + 0.5) * pitch, 0.0, fixed="y",
-                      force_N=[self.load_N / count + (self.end_N if k == count - 1 else 0.0), 0.0]) for k in range(count)]
-        links = [link(f"L{k}", f"N{k}", f"N{k + 1}", self.stiffness_N / 1e-2, 1e-2, self.alpha) for k in range(count - 1)]
+                      force_N=[self.load_N / count + (self.end_N if k == count - 1 else 0.0), 0.0])
+                 for k in range(count)]
+        links = [link(f"L{k}", f"N{k}", f"N{k + 1}", self.stiffness_N / 1e-2, 1e-2, self.alpha)
+                 for k in range(count - 1)]
         sliders = [{"name": f"S{k}", "nodes": [f"N{k}"], "axis": [1.0, 0.0], "friction_coefficient": 1.0,
                     "normal_force_N": self.friction_N / count} for k in range(count)]
         return truss(self.name, nodes, self.change_K, link=links, slider=sliders, thermal={"cycles": CYCLES})

@@ -35,16 +35,18 @@ def load_lb(deflection_in: float) -> float:
         return np.array([end[0] - HALF_IN, end[1] - (RISE_IN - deflection_in), end[2] - SLOPE])
 
     strain = deflection_in * RISE_IN / LENGTH_IN**2
-    found = fsolve(missing, [AXIAL_LB * strain * 0.7, 6 * BENDING_LB_IN2 * deflection_in / LENGTH_IN**2, 10.0], xtol=1e-13)
+    found = fsolve(missing, [AXIAL_LB * strain * 0.7, 6 * BENDING_LB_IN2 * deflection_in / LENGTH_IN**2, 10.0],
+                   xtol=1e-13)
     return 2 * float(abs(found[2]))
 
 
 def frame(force_lb: float, beams: int) -> sj.Case:
-    """Return the left half of the frame; its crown is guided. Inches and pounds stand in place of metres and newtons."""
+    """Return the left half of the frame; its crown is guided. Inches and pounds stand for metres and newtons."""
     keys = section(1e6, AXIAL_LB / 1e6, BENDING_LB_IN2 / 1e6)
     nodes = [node("N0", 0.0, 0.0, clamped=True)]
     nodes += [node(f"N{k}", HALF_IN * k / beams, RISE_IN * k / beams) for k in range(1, beams)]
-    nodes.append({**node(f"N{beams}", HALF_IN, RISE_IN, fixed="x", force_N=[0.0, -force_lb / 2]), "fixed_rotations": ["z"]})
+    nodes.append({**node(f"N{beams}", HALF_IN, RISE_IN, fixed="x", force_N=[0.0, -force_lb / 2]),
+                  "fixed_rotations": ["z"]})
     return truss("williams_toggle", nodes, beam=chain(beams, keys), reduced={"increments_per_branch": 1})
 
 
@@ -76,17 +78,21 @@ def entry() -> Entry:
     exact = [float(brentq(lambda at, load=load: load_lb(at) - load, 1e-4, float(most.x))) for load in loads[:4]]
     path = np.linspace(0.005, 0.3, 25)
     return Entry(
-        name="williams_toggle", part="Beams and frames", title="Limit load of the toggle frame of Williams", kind=CLOSED_FORM,
-        source="F. W. Williams, Q. J. Mech. Appl. Math. 17 (1964) 451-469; the script integrates the extensible elastica",
+        name="williams_toggle", part="Beams and frames", title="Limit load of the toggle frame of Williams",
+        kind=CLOSED_FORM,
+        source="F. W. Williams, Q. J. Mech. Appl. Math. 17 (1964) 451-469; the script integrates the extensible "
+        "elastica",
         uncertainty="1e-8",
-        statement="Two clamped legs, half span 12.943 in and rise 0.386 in, meet rigidly at a crown that a load presses. Find the "
-        "load at which the frame snaps through.", case=frame(0.8 * limit, 8), tolerance=2e-4,
+        statement="Two clamped legs, half span 12.943 in and rise 0.386 in, meet rigidly at a crown that a load "
+        "presses. Find the load at which the frame snaps through.", case=frame(0.8 * limit, 8), tolerance=2e-4,
         reason="solver entries; ours is extrapolated from 4 and 8 beams per leg",
-        rows=[Row("limit load", "lb", limit, better), Row("limit load, 8 beams per leg", "lb", limit, fine, refined=better),
+        rows=[Row("limit load", "lb", limit, better),
+              Row("limit load, 8 beams per leg", "lb", limit, fine, refined=better),
               Row("deflection at 0.8 of the limit", "in", exact[3], ours[3], tolerance=2e-4)],
         picture=Picture("deflection of the crown [in]", "load [lb]", [
-            Curve("elastica", path, [load_lb(float(at)) for at in path]), Curve("ours, 8 beams per leg", ours, loads, ours=False)]),
-        verdict="The solver follows the frame to its limit load and refuses larger loads.", seconds=6.0)
+            Curve("elastica", path, [load_lb(float(at)) for at in path]),
+            Curve("ours, 8 beams per leg", ours, loads, ours=False)]),
+        verdict="The solver follows the frame to its limit load and refuses larger loads.")
 
 
 if __name__ == "__main__":
