@@ -17,7 +17,9 @@ def entry() -> Entry:
         "as quoted at blogs.scienceforums.net/swansont/archives/5814; span 4200 ft, towers 746 ft and roadway 220 ft "
         "above the water: the bridge's fact sheets", uncertainty="the temperatures are not stated: 50 K are taken; "
         "traffic loads may be part of the 16 ft; sag and side spans (1125 ft) are estimates",
-        statement="As for the Verrazzano-Narrows Bridge.", case=bridge.case(CHANGE_K), tolerance=1.0,
+        statement="The steel cables of a suspension bridge of 1280 m span expand over its towers and backstays, like "
+        "those of the entry suspension_bridge. Find the vertical movement of the middle between the coldest and the "
+        "hottest day.", case=bridge.case(CHANGE_K), tolerance=1.0,
         reason="a factor of two",
         rows=[Row("range of the middle", "m", 16 * FOOT, bridge.descent_m(CHANGE_K), low=8 * FOOT, high=32 * FOOT)],
         verdict="Ours is half of the stated movement. The source gives neither temperatures nor loads, and 16 ft by "

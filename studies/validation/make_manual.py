@@ -27,7 +27,7 @@ HERE = Path(__file__).resolve().parent
 PAGES = HERE.parents[1] / "docs" / "validation" / "manual"
 VERDICTS = PAGES / "verdicts.json"
 NOT_ENTRIES = {"manual", "make_manual", "bimaterial", "impact", "loops", "suspension", "walking"}
-SLOW = {"bend_45", "cold_polymer_strip", "ssll08", "williams_toggle"}  # 3 to 12 s each: not tests
+SLOW = {"bend_45", "cold_polymer_strip", "ssll06", "ssll08", "williams_toggle"}  # 2 to 12 s each: not tests
 LARGEST_SKETCH = 40  # nodes
 
 
