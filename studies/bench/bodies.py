@@ -5,8 +5,8 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/bodies.py
 
 A body is a ladder of beams, condensed to the nodes of its rails. It stands on a foot, expands against a spring, and its
-last node slides with friction. Prints a table: bodies, dofs of the interface of each, increments, seconds of a path of one
-cycle (median of three), largest memory of the process.
+last node slides with friction. Prints a table: bodies, dofs of the interface of each, linear solves, seconds of a path
+of one cycle (median of three), largest memory of the process.
 """
 from __future__ import annotations
 
@@ -64,7 +64,8 @@ def case(bodies: int, dofs: int) -> Any:
             foot = {"fixed": ["x", "y", "z"], "fixed_rotations": ["x", "y", "z"]} if k == 0 else {}
             end = {"fixed": ["y", "z"]} if k == count - 1 else {}
             nodes.append({"name": name, "position_m": [BAY_M * k, float(number), 0.0], **foot, **end})
-        nodes.append({"name": f"w{number}", "position_m": [BAY_M * count, float(number), 0.0], "fixed": ["x", "y", "z"]})
+        nodes.append({"name": f"w{number}", "position_m": [BAY_M * count, float(number), 0.0],
+                      "fixed": ["x", "y", "z"]})
         parts["body"].append({"name": f"b{number}", "nodes": names, "content": content,
                               "position_m": [0.0, float(number), 0.0]})
         parts["slider"].append({"name": f"s{number}", "nodes": [names[-1]], "axis": [1.0, 0.0, 0.0],

@@ -666,8 +666,8 @@ CODES: dict[str, Code] = {
     "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",
                                   remedy="give node:NAME"),
     "bounds_body": Code(
-        what="{part}: bounds of condensed bodies are not available yet",
-        cause="their thermal patterns are no temperatures of members",
+        what="{part} has no bounds",
+        cause="its thermal patterns follow different programs, a bound varies one temperature for each item",
     ),
     "bounds_bad_range": Code(cause="must be LOWEST:HIGHEST with LOWEST <= 0 <= HIGHEST [K], for example -80:60"),
     "no_moving_mass": Code(

@@ -162,21 +162,26 @@ def _case_of(case: TrussCase, of: Sliding, members: Temperatures, legs: np.ndarr
     if np.ptp(programs, axis=1).max() > 1e-9 * max(np.abs(programs).max(), 1e-300):
         count = of.heating_N_per_K.shape[1]
         links = len(of.truss.links.names)
+        beams, bodies = len(data.get("beam", [])), len(data.get("body", []))
         place = {**{index: ("link", index) for index in range(links)},
-                 **{count - len(data.get("beam", [])) + index: ("beam", index)
-                    for index in range(len(data.get("beam", [])))}}
+                 **{count - bodies - beams + index: ("beam", index) for index in range(beams)},
+                 **{count - bodies + index: ("body", index) for index in range(bodies)}}
         data["program"] = []
         for column, element in enumerate(which):
             section, index = place[element]
             label = f"of_{data[section][index]['name']}"
-            data[section][index]["program"] = label
+            if section == "body":
+                patterns = of.truss.elements["body"].programs[index]
+                data[section][index]["programs"] = [label] * len(patterns)
+            else:
+                data[section][index]["program"] = label
             data["program"].append({"name": label, "shape": "table", "table_time_s": time,
                                     "table_temperature_change_K": programs[:, column].tolist()})
     else:
         data.pop("program", None)
-        for section in ("link", "beam"):
+        for section in ("link", "beam", "body"):
             for item in data.get(section, []):
-                item.pop("program", None)
+                item.pop("programs" if section == "body" else "program", None)
     made = load_case(data)
     assert isinstance(made, TrussCase)
     return made

@@ -168,7 +168,8 @@ def margin(of: Sliding) -> Margin:
 
 def refuses_margin(of: Sliding) -> str:
     """Return why no margin is derived; empty: it is."""
-    for parts, sections in ((of.truss.elements, ("beam", "torsion_spring")), (of.truss.joints, ("hinge", "rigid"))):
+    without = (of.truss.elements, ("beam", "body", "torsion_spring")), (of.truss.joints, ("hinge", "rigid"))
+    for parts, sections in without:
         for section in sections:  # the reactions of joints add no geometric stiffness to K
             if len(parts[section].names):
                 return f"the margin of exact geometry is not derived for [[{section}]]"

@@ -85,11 +85,14 @@ class Temperatures:
 def _programs(of: Heated) -> tuple[np.ndarray, np.ndarray]:
     """Return the program (-1: none) and the fraction of its ΔT of every element."""
     truss, count = of.truss, of.heating_N_per_K.shape[1]
-    for name in truss.elements["body"].names:
-        raise StatejumpError(code="bounds_body", part=f"body {name!r}")
     numbers, fractions = np.full(count, -1), np.ones(count)
-    beams = truss.elements["beam"]
-    for start, part in ((0, truss.links), (count - len(beams.names), beams)):
+    beams, bodies = truss.elements["beam"], truss.elements["body"]
+    of_bodies = count - len(bodies.names)
+    for index, (name, programs) in enumerate(zip(bodies.names, bodies.programs)):
+        if len(set(programs.tolist())) > 1:
+            raise StatejumpError(code="bounds_body", part=f"body {name!r}")
+        numbers[of_bodies + index] = programs[0] if len(programs) else -1
+    for start, part in ((0, truss.links), (of_bodies - len(beams.names), beams)):
         rows = slice(start, start + len(part.names))
         numbers[rows], fractions[rows] = part.program, part.temperature_fraction
     return numbers, fractions
