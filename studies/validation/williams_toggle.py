@@ -84,7 +84,8 @@ def entry() -> Entry:
         "elastica",
         uncertainty="1e-8",
         statement="Two clamped legs, half span 12.943 in and rise 0.386 in, meet rigidly at a crown that a load "
-        "presses. Find the load at which the frame snaps through.", case=frame(round(0.8 * limit, 3), 8), tolerance=2e-4,
+        "presses. Find the load at which the frame snaps through.", case=frame(round(0.8 * limit, 3), 8),
+        tolerance=2e-4,
         reason="solver entries; ours is extrapolated from 4 and 8 beams per leg",
         rows=[Row("limit load", "lb", limit, better),
               Row("limit load, 8 beams per leg", "lb", limit, fine, refined=better),
