@@ -815,6 +815,13 @@ CODES: dict[str, Code] = {
     "hinge_apart": Code(cause="its nodes are {apart_m:g} m apart", remedy="put them at one position"),
     "hinge_sticking_missing": Code(cause="reduced.sticking = {sticking!r} needs it, the hinge has no stiffness"),
     "released_twice": Code(cause="both ends release the {released}", remedy="release it at one end"),
+    "mean_moment": Code(cause="node {node!r} has a moment, and nothing else carries its part about {direction!r}",
+                        remedy="let the reference follow in this direction too"),
+    "mean_node_repeated": Code(cause="must be different nodes other than the reference"),
+    "mean_undetermined": Code(
+        cause="the nodes are on one line or at one position, which does not determine {direction!r} of the reference",
+        remedy="name more nodes, or leave out this direction"),
+    "mean_weights": Code(cause="must be {nodes_of_mean}, one above 0 for each node of 'nodes'"),
     "rigid_node_fixed": Code(cause="supports hold it and the master, so the force of its arm is not unique",
                              remedy="leave it out"),
     "rigid_node_repeated": Code(cause="must be different nodes other than the master"),
@@ -839,7 +846,7 @@ CODES: dict[str, Code] = {
         remedy='set reduced.sticking to "elastic" or "rigid"',
     ),
     "node_without_rotation": Code(
-        cause="no beam, rigid body or hinge rotates the node; a beam end that releases all moments does not"),
+        cause="no beam, body, hinge or mean rotates the node; a beam end that releases all moments does not"),
     "planar_axis": Code(cause="in a planar truss it is z"),
     "planar_body": Code(cause="condensed bodies need 3"),
     "planar_axis_y": Code(cause="in a planar truss y of a section lies in the plane, to the left of its beam"),
