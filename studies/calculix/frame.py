@@ -19,15 +19,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from statejump.kinds.truss.resolved import ResolvedTruss
 from studies.calculix.ccx import number
-from studies.calculix.truss_sliding import STICK, STRETCH, Bricks
+from studies.calculix.truss_sliding import STRETCH, Bricks
 
 Numbers = NDArray[np.float64]
 Term = tuple[int, int, float]  # node of the deck, direction 1 to 3, coefficient
 Place = tuple[int, int]  # node of the deck, direction 1 to 3
 
-PARTS = 2  # bricks along a beam
 LEAST_SHEAR = 1e-7  # Φ = 12 E I/(k G A l²) of beams that are rigid in shear
 ROUNDING = 1e-12  # of coefficients
 WEAK = 1e-12  # stiffness of hinges without spring, over that of sticking friction
@@ -42,9 +40,11 @@ class Frame(Bricks):
     """Parts of a deck. Node i of the structure has the number i + 1; its rotations are the displacements of the node
     n + i + 1.
 
+    :param parts: bricks along a beam
     :param even_shear: the beams have the shear modulus E/2 of an isotropic material in place of their k G A
     """
 
+    parts: int = 2
     even_shear: bool = False
     eliminated: dict[Place, dict[Place, float]] = field(default_factory=dict)
     order: dict[Place, int] = field(default_factory=dict)
@@ -134,7 +134,8 @@ def rigid_bodies(frame: Frame) -> None:
         turned = frame.count + master + 1
         for axis in range(3):
             if holds[axis]:
-                frame.equate([(node + 1, axis + 1, 1.0), *frame.carried(master + 1, turned, at[node] - at[master], axis)])
+                arm = at[node] - at[master]
+                frame.equate([(node + 1, axis + 1, 1.0), *frame.carried(master + 1, turned, arm, axis)])
             if holds[3 + axis]:
                 frame.equate([(frame.count + node + 1, axis + 1, 1.0), (turned, axis + 1, -1.0)])
 
@@ -156,11 +157,13 @@ def hinges(frame: Frame, rigid: float) -> None:
         friction, stiffness = float(joints.friction_moment_N_m[place]), float(joints.stiffness_N_m_per_rad[place])
         play, preload = float(joints.deadband_rad[place]), float(joints.preload_moment_N_m[place])
         sticks = float(joints.friction_stiffness_N_m_per_rad[place]) if elastic else rigid
-        parts = [(sticks if friction else WEAK * rigid, friction or None)]
+        # CalculiX iterates only if a brick may yield, also for the spring beyond the play.
+        bound = friction or stiffness * play or None
+        parts = [(sticks if friction else WEAK * rigid, bound)]
         if stiffness and not play:
             parts.append((stiffness, None))
-        for part, bound in parts:
-            end = frame.brick(STRETCH, part * STRETCH, 0.0, bound)
+        for part, most in parts:
+            end = frame.brick(STRETCH, part * STRETCH, 0.0, most)
             frame.tie(end, ends, axis, turned=True)
         if stiffness and play:
             frame.springs.append((end, play, stiffness))
@@ -184,7 +187,7 @@ def beams(frame: Frame) -> None:
         made = _bricks(frame, index, first, length, triad)
         _material(frame, index, triad, length)
         for (x, y, z), node in made.items():
-            if x not in (0, 2 * PARTS):
+            if x not in (0, 2 * frame.parts):
                 continue
             (carrier, turned), offset = holders[x > 0]
             arm = offset + y / 2 * frame.sides[-1][0] * triad[1] + z / 2 * frame.sides[-1][1] * triad[2]
@@ -222,17 +225,17 @@ def _bricks(frame: Frame, index: int, first: Numbers, length: float, triad: Numb
 
     def at(place: tuple[int, int, int]) -> int:
         if place not in made:
-            x, y, z = place[0] / (2 * PARTS) * length, place[1] / 2 * sides[0], place[2] / 2 * sides[1]
+            x, y, z = place[0] / (2 * frame.parts) * length, place[1] / 2 * sides[0], place[2] / 2 * sides[1]
             made[place] = frame.add_node(first + x * triad[0] + y * triad[1] + z * triad[2])
             frame.heated.append((index, made[place], y, z))
         return made[place]
 
-    numbers = range(frame.element + 1, frame.element + PARTS + 1)
+    numbers = range(frame.element + 1, frame.element + frame.parts + 1)
     frame.sections.append(f"*ELEMENT, TYPE=C3D20R, ELSET=B{index + 1}")
     for part, brick in enumerate(numbers):
         words = [str(at((2 * part + 1 + x, y, z))) for x, y, z in PLACES]
         frame.sections += [", ".join([str(brick), *words[:10]]) + ",", ", ".join(words[10:])]
-    frame.element += PARTS
+    frame.element += frame.parts
     frame.bending.append(list(numbers))
     return made
 
@@ -252,7 +255,7 @@ def _material(frame: Frame, index: int, triad: Numbers, length: float) -> None:
         f"*SOLID SECTION, ELSET=B{name}, MATERIAL=B{name}, ORIENTATION=O{name}"]
 
 
-def section_moments(truss: ResolvedTruss, sides: Sequence[tuple[float, float]], bricks: Sequence[Sequence[int]],
+def section_moments(sides: Sequence[tuple[float, float]], bricks: Sequence[Sequence[int]],
                     stresses: dict[tuple[int, int], Numbers]) -> Numbers:
     """Return the bending moments (beams, 2 ends, 2) [N m] about y and z of the sections.
 
