@@ -747,6 +747,9 @@ CODES: dict[str, Code] = {
     "fe_other_parts": Code(
         cause="'statejump fe' takes trusses of links, sliders, Iwan joints and joints with clearance only",
     ),
+    "fe_other_parts_with_beams": Code(
+        cause="'statejump fe' takes beams together with links, sliders, hinges and rigid bodies only",
+    ),
     "fe_slider_branches": Code(cause="sliders of 'statejump fe' are followed over at most {most} branches"),
     "fe_slider_shape": Code(cause="sliders of 'statejump fe' follow 'triangle' and 'table'"),
     "fe_soft_sliders": Code(cause="the deck's sliders have rigid stops and no play"),
