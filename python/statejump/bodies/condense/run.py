@@ -263,10 +263,10 @@ def _support(mesh: _Mesh, used: Sequence[int]) -> list[tuple[int, int]]:
     places = np.array([mesh.deck.positions[node] for node in nodes])
     far = np.linalg.norm(places - places.mean(axis=0), axis=1)
     inner = far <= INNER * far.max()
-    spread = np.linalg.svd(places[inner] - places[inner].mean(axis=0), compute_uv=False) if inner.sum() > 2 else [0, 0]
-    if spread[1] > 1e-3 * far.max():
-        nodes = [node for node, near in zip(nodes, inner) if near]
-        places = places[inner]
+    near = places[inner]
+    if len(near) > 2 and np.linalg.svd(near - near.mean(axis=0), compute_uv=False)[1] > 1e-3 * far.max():
+        nodes = [node for node, kept in zip(nodes, inner) if kept]
+        places = near
     first = int(np.linalg.norm(places - places.mean(axis=0), axis=1).argmax())
     second = int(np.linalg.norm(places - places[first], axis=1).argmax())
     along = (places[second] - places[first]) / np.linalg.norm(places[second] - places[first])
