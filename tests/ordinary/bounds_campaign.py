@@ -117,7 +117,8 @@ def table(rows: list[Row]) -> str:
     lines = ["| class | quality | structures | states | outside | reached/bound, median | simulated/bound, median |",
              "|---|---|---|---|---|---|---|"]
     for letter, quality in sorted({(row["class"], row["quality"]) for row in rows}):
-        ours = [row for row in rows if (row["class"], row["quality"]) == (letter, quality) and 0 < row["spread_m"] < np.inf]
+        ours = [row for row in rows
+                if (row["class"], row["quality"]) == (letter, quality) and LEAST_m < row["spread_m"] < np.inf]
         if not ours:
             continue
         structures_ = {(row["family"], row["seed"]): row["states"] for row in ours}

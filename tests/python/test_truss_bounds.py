@@ -299,7 +299,7 @@ def test_command_writes_a_case_that_attains_the_bound(statejump: Any, tmp_path: 
     middle = int(np.abs(path["time_s"] - path["time_s"][-1] / 2).argmin())
     reached = path["displacement_m"][middle, 1, 1] - path["displacement_m"][-1, 1, 1]
     assert reached == pytest.approx(record["bounds"][0]["spread_m"], rel=1e-4)
-    for name in ("bounds.png", "bounds_over_range.png"):
+    for name in ("bounds.png", "bounds_over_range.png", "bounds_joints.png"):
         assert (folder / name).stat().st_size > 1000
 
 

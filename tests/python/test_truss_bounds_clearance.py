@@ -28,7 +28,7 @@ def test_shipped_cases_are_bounded_tightly(name: str) -> None:
     found = bounds(sj.load(name), [output])
     bound = found.bounds[0]
     assert found.letter == "C" and found.quality == "linear" and found.verdict.kind == "unknown"
-    assert 1e-6 * least <= bound.reached_m <= bound.spread_m <= 1e-6 * most
+    assert 1e-6 * least <= bound.reached_m <= bound.spread_m <= bound.spread_m + bound.margin_m <= 1e-6 * most
     assert bound.simulated_m <= bound.jump_m <= bound.spread_m
     assert "all contacts of revolutes stay closed in all rest states" in found.facts
 
@@ -51,7 +51,7 @@ def rest_state_is_exact(of: Clearances, state: np.ndarray) -> None:
 @pytest.mark.parametrize("name", ["umbrella_rib", "ring_12"])
 def test_rest_states_are_exact_and_within_all_ranges(name: str) -> None:
     of = clearances(sj.load(name))
-    at, programs = propagated(of), contacts(of).programs
+    at, programs = propagated(of), contacts(of).wide
     seen = forces(of, at)
     rng = np.random.default_rng(0)
     for _ in range(4):
@@ -79,8 +79,8 @@ def test_no_random_history_leaves_the_bounds(name: str, most_K: float, histories
                              for _ in range(histories)])
     for bound in found.bounds:
         values = bound.output.value(states)
-        assert np.ptp(values) <= bound.spread_m
-        assert np.abs(values - values[0]).max() <= bound.jump_m * (1 + 1e-9)
+        assert np.ptp(values) <= bound.spread_m + bound.margin_m
+        assert np.abs(values - values[0]).max() <= bound.jump_m + bound.margin_m
 
 
 def changed(name: str, **values: Any) -> Any:

@@ -41,26 +41,24 @@ def with_clearance(case: TrussCase) -> bool:
 class Contacts:
     """Everything that bounds of outputs need.
 
-    :param of: the linear truss
-    :param wide: the truss with the forces of exact geometry as further joints
-    :param programs: linear programs at the ranges of ``wide``
+    :param linear: linear programs of the linear truss
+    :param wide: those of the truss with the forces of exact geometry as further joints
     """
 
-    of: Clearances
-    wide: Clearances
-    programs: Coupled
+    linear: Coupled
+    wide: Coupled
     quality: str
     why: str
 
 
 def contacts(of: Clearances) -> Contacts:
     """Return ranges of the contacts and programs, with the margin of exact geometry if it exists."""
-    linear = propagated(of)
+    programs = coupled(of, propagated(of))
     rows, bars, arms = _rows(of)
     for section in NOT_IN_MARGIN:
         if len(of.truss.elements[section].names):
-            why = f"the margin of exact geometry is not derived for [[{section}]]"
-            return Contacts(of, of, coupled(of, linear), "estimate", why)
+            return Contacts(programs, programs, "estimate",
+                            f"the margin of exact geometry is not derived for [[{section}]]")
     moved, _ = of.respond(rows.T.toarray())
     compliance = np.abs(rows @ moved)
     elastic = np.abs(rows[:bars.count] @ moved)
@@ -77,10 +75,10 @@ def contacts(of: Clearances) -> Contacts:
         if now is None:
             break
         if np.all(now <= most):
-            return Contacts(of, wide, coupled(wide, at), "linear",
-                            "contacts are exact; the margin in the bounds covers exact geometry near the linear states")
+            return Contacts(programs, coupled(wide, at), "linear",
+                            "contacts are exact; the margin covers exact geometry near the linear rest states")
         most = np.where(now > most, GROWTH * now, most)
-    return Contacts(of, of, coupled(of, linear), "estimate",
+    return Contacts(programs, programs, "estimate",
                     "the margin of exact geometry does not converge: the truss is nearly a mechanism")
 
 
@@ -144,9 +142,9 @@ def bounds_of_clearance(case: TrussCase, names: Sequence[str], box: tuple[float,
                         simulate: bool | None) -> Bounds:
     """Return bounds of the state jump of a truss with clearance revolutes."""
     found = contacts(clearances(case))
-    of, wide, at = found.of, found.wide, found.programs.at
+    of, wide, at = found.linear.of, found.wide.of, found.wide.at
     facts = list(kept_cables(of, lambda rows: _half(wide, at, rows @ wide.by_state)))
-    if np.all(found.programs.seen.least_N > 0):
+    if np.all(found.wide.seen.least_N > 0):
         facts.append("all contacts of revolutes stay closed in all rest states")
     places = of.of_nodes[:3 * len(of.truss.nodes.names)]
     outputs = chosen(of, names, lambda: _half(wide, at, places @ wide.by_state).reshape(-1, 3))
@@ -166,35 +164,43 @@ def _half(of: Clearances, at: Sectors, rows: np.ndarray) -> np.ndarray:
 
 
 def _bound(found: Contacts, output: Output, path_m: np.ndarray) -> Bound:
-    of, wide, at = found.of, found.wide, found.programs.at
+    of, at = found.linear.of, found.linear.at
     rows = output.rows(of)
-    gains, linear = rows @ wide.by_state, rows @ of.by_state
+    linear = rows @ of.by_state
     start = output.vector(path_m[0]) - output.vector(of.displacement_m)
-    columns = _generators(wide, at, gains)
-    directions, factor = ways(columns)
-    worst, spread, jump = _extent(found, gains, start, directions, factor)
-    if not factor:
-        far = farthest(columns)
-        worst, spread = far.direction(columns), min(spread, 2 * far.bound)
-        if len(rows) <= MOST_ROWS:
-            _, alone, jump_alone = _extent(found, gains, start, np.eye(len(rows)), 0.0)
-            spread, jump = min(spread, alone), min(jump, jump_alone)
+    worst, spread, jump = _extent(found.linear, rows, start)
+    total = spread if found.wide is found.linear else max(spread, _extent(found.wide, rows, start)[1])
     states = [farthest_state(of, side * worst @ linear) for side in (1.0, -1.0)]
     reached = (nan if states[0] is None or states[1] is None
                else float(np.linalg.norm(linear @ (states[0].state - states[1].state))))
     parts = _parts(of, at, worst @ linear)
+    margin = total - spread if found.quality == "linear" else nan
     return Bound(
-        output=output, spread=spread, reached=reached, margin=0.0 if found.quality == "linear" else nan,
-        jump=min(jump, spread), range_spread=nan, range_jump=nan,
+        output=output, spread=spread, reached=reached, margin=margin, jump=jump, range_spread=nan, range_jump=nan,
         simulated=nan if len(path_m) < 2 else output.change(path_m[0], path_m[-1]), attained=nan,
         fraction=parts / (parts.sum() or 1.0), peak_thermal=(nan, nan))
 
 
-def _extent(found: Contacts, gains: np.ndarray, start: np.ndarray, directions: np.ndarray, factor: float
-            ) -> tuple[np.ndarray, float, float]:
-    """Return the direction of the largest width, and bounds of spread and jump of rows · x; see :func:`ways`."""
-    zero = gains @ found.wide.start
-    high, low = (np.array([sign * found.programs.of_state(sign * way @ gains) - way @ zero for way in directions])
+def _extent(programs: Coupled, rows: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Return the direction in which an output spreads most, and bounds of its spread and of its jump."""
+    gains = rows @ programs.of.by_state
+    columns = _generators(programs.of, programs.at, gains)
+    directions, factor = ways(columns)
+    worst, spread, jump = _along(programs, gains, start, directions, factor)
+    if not factor:
+        far = farthest(columns)
+        worst, spread = far.direction(columns), min(spread, 2 * far.bound)
+        if len(rows) <= MOST_ROWS:
+            _, alone, jump_alone = _along(programs, gains, start, np.eye(len(rows)), 0.0)
+            spread, jump = min(spread, alone), min(jump, jump_alone)
+    return worst, spread, min(spread, jump)
+
+
+def _along(programs: Coupled, gains: np.ndarray, start: np.ndarray, directions: np.ndarray, factor: float
+           ) -> tuple[np.ndarray, float, float]:
+    """Return the same by the widths in directions; see :func:`ways`."""
+    zero = gains @ programs.of.start
+    high, low = (np.array([sign * programs.of_state(sign * way @ gains) - way @ zero for way in directions])
                  for sign in (1.0, -1.0))
     widths, begin = high - low, directions @ start
     jumps = np.maximum(high - begin, begin - low)

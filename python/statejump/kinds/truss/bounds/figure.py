@@ -7,10 +7,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 
 from statejump.core.figures import panels, style
-from statejump.kinds.truss.answers.figure import readable
+from statejump.kinds.truss.answers.figure import JUMPS, MARKED, joint_places, readable
 from statejump.kinds.truss.bounds.outputs import Output
+from statejump.kinds.truss.bounds.sliding import AXES
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.resolved import ResolvedTruss
 
 BARS = (("spread", "bound, any history", "#0072B2"), ("range_spread", "bound within the range", "#56B4E9"),
         ("attained", "attained by a history", "#009E73"), ("simulated", "simulated jump of the case", "#E69F00"))
@@ -89,3 +93,31 @@ def zonogon_figure(name: str, bound: Any) -> Any:
         axes.legend(loc="best", frameon=False)
         figure.suptitle(f"{name}: {bound.output.name} from the state without friction", fontsize=10)
     return figure
+
+
+def coloured(truss: ResolvedTruss, joints: Sequence[str], bound: Any) -> Any:
+    """Draw the truss with a circle at every joint, whose area and colour are its contribution to a bound."""
+    node_of = {f"{section} '{name}'": node for section, name, node in _joints(truss)}
+    place = truss.nodes.position_m[[node_of[joint] for joint in joints]]
+    seen = np.sort(np.argsort(-np.ptp(truss.nodes.position_m, axis=0), kind="stable")[:2])
+    percent = 100 * bound.fraction
+    with style():
+        figure, axes = panels(1, 1, (6.4, 4.4))
+        lines = truss.nodes.position_m[np.concatenate(truss.ends()).astype(int)][..., seen]
+        axes.add_collection(LineCollection(list(lines), colors="0.72", linewidths=1, zorder=1))
+        drawn = axes.scatter(*place[:, seen].T, s=20 + 3 * percent, c=percent, cmap=JUMPS, vmin=0, zorder=2,
+                             edgecolors="0.2", linewidths=0.5)
+        figure.colorbar(drawn, ax=axes, label="contribution of the joint [%]")
+        for index in np.argsort(-percent, kind="stable")[:MARKED]:
+            axes.annotate(joints[index].partition("'")[2].rstrip("'"), place[index, seen], xytext=(5, 5),
+                          textcoords="offset points", fontsize=8)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_xlabel(f"{AXES[seen[0]]} [m]")
+        axes.set_ylabel(f"{AXES[seen[1]]} [m]")
+        figure.suptitle(f"{truss.name}: contributions to {bound.output.name}", fontsize=10)
+    return figure
+
+
+def _joints(truss: ResolvedTruss) -> list[tuple[str, str, int]]:
+    names = [(joint.section, name) for joint in JOINTS for name in truss.joints[joint.section].names]
+    return [(section, name, int(node)) for (section, name), node in zip(names, joint_places(truss))]

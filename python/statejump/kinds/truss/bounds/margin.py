@@ -130,7 +130,8 @@ def arms_of(of: Sliding, all_plays: bool = False) -> Arms:
     edge, stiffness = latches.deadband_rad[owner], latches.stiffness_N_m_per_rad[owner]
     beyond = rotation - np.clip(rotation, -edge, edge)
     other = np.abs(latches.preload_moment_N_m[owner] + stiffness * beyond)
-    return Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, np.where(all_plays | (beyond != 0), stiffness, 0.0))
+    springs = np.where(all_plays | (beyond != 0), stiffness, 0.0)
+    return Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, springs)
 
 
 def margin(of: Sliding) -> Margin:

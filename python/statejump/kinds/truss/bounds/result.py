@@ -14,12 +14,13 @@ from statejump.core.figures import save
 from statejump.core.output import write_atomically
 from statejump.core.tables import Shown, write_csv
 from statejump.core.units import text
-from statejump.kinds.truss.bounds.figure import bars, staircase, zonogon_figure
+from statejump.kinds.truss.bounds.figure import bars, coloured, staircase, zonogon_figure
 from statejump.kinds.truss.bounds.history import Attained
 from statejump.kinds.truss.bounds.outputs import Output
 from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict
 from statejump.kinds.truss.resolved import ResolvedTruss
 
+MOST_DRAWN = 500  # joints in the picture of the truss
 RANKED = 10  # joints in the printed table
 NUMBERS = ("spread", "reached", "margin", "jump", "range_spread", "range_jump", "simulated", "attained")
 UNITS = {"m": ("µm", 1e6), "rad": ("µrad", 1e6)}
@@ -165,6 +166,8 @@ class Bounds:
             json.dump(self.record(), stream, indent=1)
         cases = [one.case.save(folder / f"{one.case.name}.toml") for one in self.attained.values()]
         pictures = save(self.plot(), folder, "bounds")
+        if len(self.joints) <= MOST_DRAWN:
+            pictures += save(coloured(self.truss, self.joints, self.bounds[0]), folder, "bounds_joints")
         if self.over_range is not None:
             pictures += save(self.plot_range(), folder, "bounds_over_range")
         for bound in self.bounds:
