@@ -2,6 +2,7 @@
 """Bounds of trusses with clearance revolutes: shipped cases, exact rest states, random histories."""
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,12 @@ def test_no_random_history_leaves_the_bounds(name: str, most_K: float, histories
         values = bound.output.value(states)
         assert np.ptp(values) <= bound.spread_m + bound.margin_m
         assert np.abs(values - values[0]).max() <= bound.jump_m + bound.margin_m
+
+
+def test_pictures_show_sectors_and_contributions(tmp_path: Path) -> None:
+    found = bounds(sj.load("mast_6"), ["node:R6.y"], simulate=False)
+    written = {path.name for path in found.write(tmp_path)}
+    assert {"bounds.png", "bounds_joints.png", "bounds_sectors.png", "bounds.json"} <= written
 
 
 def changed(name: str, **values: Any) -> Any:

@@ -154,7 +154,7 @@ def bounds_of_clearance(case: TrussCase, names: Sequence[str], box: tuple[float,
     nothing = np.zeros(0)
     return Bounds(of.truss, "C", found.quality, found.why, facts, made, [str(joint) for joint in of.joints],
                   np.concatenate((at.friction_N, of.limit_N)), Verdict("unknown", UNCERTAIN),
-                  Temperatures(text, nothing, nothing, nothing), {})
+                  Temperatures(text, nothing, nothing, nothing), {}, contacts=found)
 
 
 def _half(of: Clearances, at: Sectors, rows: np.ndarray) -> np.ndarray:

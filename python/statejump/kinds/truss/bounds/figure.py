@@ -19,6 +19,8 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 BARS = (("spread", "bound, any history", "#0072B2"), ("range_spread", "bound within the range", "#56B4E9"),
         ("attained", "attained by a history", "#009E73"), ("simulated", "simulated jump of the case", "#E69F00"))
 
+MOST_SECTORS = 24  # revolutes in the picture of contact directions
+
 
 def bars(name: str, bounds: Sequence[Any]) -> Any:
     """Draw the bars of outputs (:class:`~statejump.kinds.truss.bounds.result.Bound`), one panel for each unit."""
@@ -121,3 +123,30 @@ def coloured(truss: ResolvedTruss, joints: Sequence[str], bound: Any) -> Any:
 def _joints(truss: ResolvedTruss) -> list[tuple[str, str, int]]:
     names = [(joint.section, name) for joint in JOINTS for name in truss.joints[joint.section].names]
     return [(section, name, int(node)) for (section, name), node in zip(names, joint_places(truss))]
+
+
+def sectors_figure(name: str, contacts: Any) -> Any:
+    """Draw the bearings of revolutes with the sector of all contacts, the contact without friction and its force.
+
+    :param contacts: :class:`~statejump.kinds.truss.bounds.contacts.Contacts`
+    """
+    of, at = contacts.wide.of, contacts.wide.at
+    shown = min(of.count, MOST_SECTORS)
+    across = min(shown, 4)
+    down = -(-shown // across)
+    with style():
+        figure, axes = panels(down, across, (1.9 * across + 0.4, 2.1 * down + 0.5))
+        for index, panel in enumerate(np.atleast_1d(axes).ravel()):
+            panel.set_axis_off()
+            if index >= shown:
+                continue
+            angle = np.linspace(0, 2 * np.pi, 200)
+            panel.plot(np.cos(angle), np.sin(angle), color="0.6", linewidth=1)
+            within = np.linspace(at.least_rad[index], at.most_rad[index], 60)
+            panel.fill([0, *np.cos(within)], [0, *np.sin(within)], facecolor=BARS[1][2], alpha=0.5)
+            way = of.shift_m[index] / np.linalg.norm(of.shift_m[index])
+            panel.plot([0, way[0]], [0, way[1]], color=BARS[0][2], linewidth=1.5)
+            panel.set_aspect("equal")
+            panel.set_title(f"{of.joints[index].name}\n± {np.rad2deg(at.half_rad[index]):.1f}°", fontsize=8)
+        figure.suptitle(f"{name}: directions of contacts; line: without friction", fontsize=10)
+    return figure

@@ -14,7 +14,7 @@ from statejump.core.figures import save
 from statejump.core.output import write_atomically
 from statejump.core.tables import Shown, write_csv
 from statejump.core.units import text
-from statejump.kinds.truss.bounds.figure import bars, coloured, staircase, zonogon_figure
+from statejump.kinds.truss.bounds.figure import bars, coloured, sectors_figure, staircase, zonogon_figure
 from statejump.kinds.truss.bounds.history import Attained
 from statejump.kinds.truss.bounds.outputs import Output
 from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict
@@ -103,6 +103,7 @@ class Bounds:
     temperatures: Temperatures
     attained: Mapping[str, Attained]
     over_range: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
+    contacts: Any = None  # Contacts of clearance revolutes
 
     @property
     def guarantee(self) -> str:
@@ -168,6 +169,8 @@ class Bounds:
         pictures = save(self.plot(), folder, "bounds")
         if len(self.joints) <= MOST_DRAWN:
             pictures += save(coloured(self.truss, self.joints, self.bounds[0]), folder, "bounds_joints")
+        if self.contacts is not None:
+            pictures += save(sectors_figure(self.truss.name, self.contacts), folder, "bounds_sectors")
         if self.over_range is not None:
             pictures += save(self.plot_range(), folder, "bounds_over_range")
         for bound in self.bounds:
