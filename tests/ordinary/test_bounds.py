@@ -9,8 +9,8 @@ import bounds_campaign
 
 
 def test_no_state_of_ordinary_structures_leaves_its_bounds() -> None:
-    arguments = Namespace(count=3, seed=50, most=3, histories=1, families=["warren", "tower", "rib", "chain", "bracket"],
-                          classes=["A", "B", "C"], limit=100)
+    families = ["warren", "tower", "rib", "chain", "bracket"]
+    arguments = Namespace(count=3, seed=50, most=3, histories=1, families=families, classes=["A", "B", "C"], limit=100)
     rows = list(bounds_campaign.compared(arguments, Counter()))
     assert len({(row["family"], row["seed"]) for row in rows}) >= 4
     assert not [row for row in rows if row["outside"]]

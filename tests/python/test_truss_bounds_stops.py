@@ -42,6 +42,16 @@ def test_a_soft_stop_reduces_what_friction_can_hold() -> None:
     assert found.bounds[0].spread_m == pytest.approx((1 + 1.8 / 3) * reach_m, rel=3e-6)
 
 
+def test_a_soft_stop_that_carries_the_load_of_the_equilibrium() -> None:
+    limit_N, load_N, reach_m = 30.0, 50.0, 30.0 / STIFFNESS
+    loaded = stopped(limit_N, clearance_plus_m=reach_m, stop_stiffness_N_per_m=2 * STIFFNESS)
+    loaded["node"][1]["force_N"] = [load_N, 0.0]
+    found = bounds(sj.load(loaded), ["node:N1.x"], simulate=False)
+    # k u + 2 k (u − f/k) = P ± f where the stop is closed, k u = P − f where it is open.
+    closed_m = (load_N + limit_N + 2 * limit_N) / (3 * STIFFNESS)
+    assert found.bounds[0].spread_m == pytest.approx(closed_m - (load_N - limit_N) / STIFFNESS, rel=3e-6)
+
+
 def test_a_stop_that_carries_the_load_of_the_equilibrium() -> None:
     reach_m = 30.0 / STIFFNESS
     loaded = stopped(30.0, clearance_plus_m=0.2 * reach_m)

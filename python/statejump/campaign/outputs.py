@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -41,6 +42,14 @@ SURFACE = "surface"
 # The pattern for editors, which do not support names of groups.
 PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
 LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
+
+
+@runtime_checkable
+class Bounded(Protocol):
+    """A case whose rest states have bounds."""
+
+    def bounds(self, **settings: Any) -> Any:
+        """Return the bounds, see docs/howto/bounds.md."""
 
 
 def parts(name: str) -> re.Match[str]:
@@ -154,8 +163,8 @@ def _surface(run: Run, name: str) -> dict[str, Column]:
 
 def _bounds(run: Run, names: Sequence[str]) -> dict[str, float]:
     """Return bounds over any temperature history; they need the case of a run, not its samples."""
-    bounds = getattr(run.definition, "bounds", None)
-    if bounds is None:
+    case = run.definition
+    if not isinstance(case, Bounded):
         raise NotAllowed("outputs", names[0], code="output_without_bounds")
     found: dict[str, float] = {}
     for name in names:
@@ -163,7 +172,7 @@ def _bounds(run: Run, names: Sequence[str]) -> dict[str, float]:
         if asked["item"] is None:
             raise NotAllowed("outputs", name, code="output_bound_not_chosen")
         try:
-            bound = bounds(output=[asked["item"]], simulate=False).record()["bounds"][0]
+            bound = case.bounds(output=[asked["item"]], simulate=False).record()["bounds"][0]
         except NotAllowed:
             raise NotAllowed("outputs", name, code="output_item_undefined", what_it_is="output of bounds",
                              known="node:NAME.x, rms, tilt, zernike:K, point") from None
