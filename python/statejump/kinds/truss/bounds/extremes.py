@@ -12,7 +12,10 @@ import numpy as np
 from scipy.optimize import minimize
 
 POWERS = (8.0, 64.0, 512.0)  # of the smooth maximum of eigenvalues, while y is improved
-MOST_ROWS = 400  # of dense eigenvalue problems while y is improved
+MOST_WORK = 2e7  # rows² columns of E while y is improved
+POWERED = 100  # steps of λ = sgn EᵀE λ before single flips
+FLIP_WORK = 20_000_000  # entries of E that single flips of a start look at
+FEW = 200_000  # entries of E up to which all starts are tried
 STARTS = 24  # sign vectors from which single flips start
 ROUNDED = 1e-12  # relative error of an eigenvalue
 NOTHING = 1e-14  # relative size of columns that count as zero
@@ -106,12 +109,18 @@ def _flipped(columns: np.ndarray) -> np.ndarray:
     """Return signs that no single flip improves, the best of several starts."""
     rows, count = columns.shape
     ways = np.concatenate((np.eye(rows)[:STARTS // 2], np.random.default_rng(0).standard_normal((STARTS // 2, rows))))
+    ways = ways if rows * count <= FEW else ways[:2]
     best, most = np.ones(count), -1.0
     square = (columns**2).sum(axis=0)
     for way in ways:
         sign = _signs(way @ columns)
         total = columns @ sign
-        for _ in range(10 * count):
+        for _ in range(POWERED):  # |E λ| grows with each step
+            sign, before = _signs(total @ columns), sign
+            total = columns @ sign
+            if np.array_equal(sign, before):
+                break
+        for _ in range(min(10 * count, FLIP_WORK // (rows * count))):
             # A flip of sign i changes |E λ|² by −4 λ_i e_i·E λ + 4 |e_i|².
             gain = square - sign * (total @ columns)
             flip = int(gain.argmax())
@@ -134,7 +143,7 @@ def _dual(columns: np.ndarray) -> float:
     kept = kept / scale
     log_y = np.log(np.linalg.norm(kept, axis=0))
     best = _dual_value(kept, log_y)
-    for power in POWERS if len(kept) <= MOST_ROWS else ():
+    for power in POWERS if len(kept)**2 * kept.shape[1] <= MOST_WORK else ():
         log_y = minimize(_smooth_dual, log_y, args=(kept, power), jac=True, method="L-BFGS-B",
                          options={"maxiter": 200}).x
         best = min(best, _dual_value(kept, log_y))
