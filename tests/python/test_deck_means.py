@@ -139,14 +139,13 @@ def test_an_equation_of_one_rotation_is_a_support(tmp_path: Path) -> None:
 def test_rbe3_with_rotations_of_its_nodes(tmp_path: Path) -> None:
     """The reference 5 between the tips of two equal cantilevers follows their displacements and rotations. A symmetric
     moment about z at it: with the weights w of displacements and w L² of rotations, both tips turn alike."""
-    text = "".join(f"GRID,{at},,{x},{y},0.\n" for at, x, y in ((1, 0, 0), (2, 1, 0), (3, 0, 2), (4, 1, 2), (5, 1, 1))) + \
-        "CBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,3,4,0.,1.,0.\nGRID,6,,2.,1.,0.\nCBAR,3,1,5,6,0.,1.,0.\n" \
+    text = "".join(f"GRID,{at},,{x},{y},0.\n" for at, x, y in ((1, 0, 0), (2, 1, 0), (3, 0, 4), (4, 1, 4), (5, 1, 2))) + \
+        "CBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,3,4,0.,1.,0.\nGRID,6,,2.,2.,0.\nCBAR,3,1,5,6,0.,1.,0.\n" \
         f"SPC1,1,123456,1,3\n{SECTION}MOMENT,5,6,,{P},0.,0.,1.\nRBE3,9,,5,123456,1.,123456,2,4\n"
     made = document(tmp_path, text)
     assert "mean" not in made and len(made["constraint"]) == 6
-    # L = 1: u_x of the tips by the couple, rigid in tension; half of the sum of weights 1 + 1 goes to each part.
-    # Displacements along x: w (θ x r); rotations: w θ_i. Fit: (Σ r² + Σ L²) θ = Σ r u + L² Σ θ_i, so each tip carries
-    # P L²/4 as moment and P r/4 as axial force.
+    # r = L = 2, and the cantilevers are rigid in tension. Fit: (Σ r² + Σ L²) θ = Σ r u + L² Σ θ_i, so each tip carries
+    # the moment P L²/16.
     assert state(made, "rotation_rad", "N2")[2] * E_I == pytest.approx(P / 4, rel=1e-4)
     assert state(made, "rotation_rad", "N5")[2] * E_I == pytest.approx(P / 8, rel=1e-4)
 

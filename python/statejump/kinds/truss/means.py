@@ -107,14 +107,11 @@ class Means:
 
 def resolve_means(items: Sequence[Mean], nodes: ItemIndex, position_m: np.ndarray, dimension: int) -> Means:
     """Return the means as arrays."""
-    clouds, made, of = [], Constraints((), (), (), ()), {}
-    for item in items:
-        cloud = _cloud(item, nodes, position_m)
-        clouds.append(cloud)
-        for direction in item.follows(dimension):
-            name = f"{item.name}/{direction}"
-            made += _constraint(name, cloud, direction)
-            of[name] = item.name
+    clouds = [_cloud(item, nodes, position_m) for item in items]
+    of = {f"{item.name}/{direction}": item.name for item in items for direction in item.follows(dimension)}
+    found = [_terms(cloud, direction) for item, cloud in zip(items, clouds) for direction in item.follows(dimension)]
+    made = Constraints(tuple(of), tuple(one[0] for one in found), tuple(one[1] for one in found),
+                       tuple(one[2] for one in found))
     return Means(names(items), clouds, [item.name for item in items if item.turns(dimension)], made, of)
 
 
@@ -127,8 +124,8 @@ def _cloud(item: Mean, nodes: ItemIndex, position_m: np.ndarray) -> Cloud:
     return Cloud(reference, places, fractions, position_m[places] - centre, position_m[reference] - centre)
 
 
-def _constraint(name: str, cloud: Cloud, direction: str) -> Constraints:
-    """Return the constraint of one displacement or rotation of a reference."""
+def _terms(cloud: Cloud, direction: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return nodes, turns and coefficients of the constraint of one displacement or rotation of a reference."""
     shares = cloud.shares(direction)
     size = np.linalg.norm(shares, axis=1)
     kept = size > LEAST_COEFFICIENT * size.max()
@@ -136,7 +133,7 @@ def _constraint(name: str, cloud: Cloud, direction: str) -> Constraints:
     turns = np.zeros(len(nodes), dtype=bool)
     turns[-1] = direction in TURNS
     coefficients = np.vstack((-shares[kept], np.eye(3)["xyz".index(direction[-1])]))
-    return Constraints((name,), (nodes,), (turns,), (coefficients,))
+    return nodes, turns, coefficients
 
 
 def run_notes(means: Means, displacement_m: np.ndarray) -> tuple[str, ...]:

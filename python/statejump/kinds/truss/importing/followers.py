@@ -50,8 +50,9 @@ def take_followers(deck: Deck) -> None:
     waiting, deck.followers[:] = list(deck.followers), []
     bent = deck.bent()
     for one in waiting:
-        for card, reason in one.unsupported:
-            deck.refuse(card, reason, one.line, card)
+        for name in one.unsupported:
+            expands = name == "ALPHA"
+            deck.refuse(f"{one.card}.{name}", "mean_expands" if expands else "other_dependent_displacements", one.line)
         if not all(node in deck.nodes for node in one.nodes()):
             deck.refuse(one.card, "node_on_rigid_arm", one.line)
         elif one.node in turned and not one.turns() and one.node not in bent:

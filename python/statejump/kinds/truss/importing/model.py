@@ -158,7 +158,7 @@ class Follower:
 
     :param follows: directions (k, 6) of its displacements and rotations that follow, unit vectors
     :param others: of each other node its name, its weight, and the directions (m, 6) in which it counts
-    :param unsupported: card and reason for each of its fields that is not supported
+    :param unsupported: names of its fields that are not supported
     """
 
     line: int
@@ -166,7 +166,7 @@ class Follower:
     node: str
     follows: np.ndarray
     others: list[tuple[str, float, np.ndarray]]
-    unsupported: list[tuple[str, str]] = field(default_factory=list)
+    unsupported: list[str] = field(default_factory=list)
 
     def turns(self) -> bool:
         """Return whether its rotation follows."""

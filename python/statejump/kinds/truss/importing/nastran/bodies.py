@@ -76,19 +76,19 @@ def _ways(reader: Reader, node: str, components: str) -> np.ndarray:
     return np.kron(np.eye(2), axes)[[int(one) - 1 for one in sorted(set(components))]].reshape(-1, 6)
 
 
-def _others(reader: Reader, card: Card) -> tuple[list[tuple[str, float, np.ndarray]], list[tuple[str, str]]]:
+def _others(reader: Reader, card: Card) -> tuple[list[tuple[str, float, np.ndarray]], list[str]]:
     """Return nodes, weights and components of an RBE3, and its fields that are not supported."""
     found: list[tuple[str, float, np.ndarray]] = []
-    unsupported: list[tuple[str, str]] = []
+    unsupported: list[str] = []
     texts = [text for text in card.fields[4:] if text]
     while texts:
         if texts[0].upper() == "UM":
-            unsupported.append(("RBE3.UM", "other_dependent_displacements"))
+            unsupported.append("UM")
             texts = texts[next((at for at, text in enumerate(texts) if text.upper() == "ALPHA"), len(texts)):]
             continue
         if texts[0].upper() == "ALPHA":
             if reader.number(replace(card, fields=texts), 1) != 0:
-                unsupported.append(("RBE3.ALPHA", "mean_expands"))
+                unsupported.append("ALPHA")
             texts = texts[2:]
             continue
         weight = reader.number(replace(card, fields=texts), 0)
