@@ -187,7 +187,9 @@ def figure(name: str, title: str, heads: Sequence[str], rows: Sequence[dict[str,
         summary.set_ylabel("|jump| of θ2 [mrad]")
         summary.set_title("state jump", fontsize=9)
         summary.set_ylim(bottom=0)
-        drawing.legend(*flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
+        strip = 0.3 / drawing.get_figheight()  # for the legend
+        drawing.get_layout_engine().set(rect=(0, strip, 1, 1 - strip))
+        drawing.legend(*flat[0].get_legend_handles_labels(), loc="lower center", ncol=4, frameon=False)
         for panel in flat[len(rows) + 1:]:
             panel.axis("off")
         drawing.suptitle(title, fontsize=11)
