@@ -19,9 +19,14 @@ OF_MEMBERS = ("members", "table_time_s", "table_temperature_change_K")  # keys t
 
 
 def document_of(case: Case) -> dict[str, Any]:
-    """Return sections and keys as they were given."""
-    return {section: dict(part) if isinstance(part, dict) else part
-            for section, part in case.origin.document.items() if part not in ({}, [], None)}
+    """Return sections and keys as they were given, without keys that have no value."""
+    return {section: _given(part) for section, part in case.origin.document.items() if part not in ({}, [], None)}
+
+
+def _given(part: Any) -> Any:
+    if isinstance(part, dict):
+        return {key: value for key, value in part.items() if value is not None}
+    return [_given(item) for item in part] if isinstance(part, list) else part
 
 
 def text_of(case: Case) -> str:

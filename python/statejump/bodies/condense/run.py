@@ -264,7 +264,7 @@ def _support(mesh: _Mesh, used: Sequence[int]) -> list[tuple[int, int]]:
     far = np.linalg.norm(places - places.mean(axis=0), axis=1)
     inner = far <= INNER * far.max()
     near = places[inner]
-    if len(near) > 2 and np.linalg.svd(near - near.mean(axis=0), compute_uv=False)[1] > 1e-3 * far.max():
+    if len(near) > 2 and np.asarray(np.linalg.svd(near - near.mean(axis=0), compute_uv=False))[1] > 1e-3 * far.max():
         nodes = [node for node, kept in zip(nodes, inner) if kept]
         places = near
     first = int(np.linalg.norm(places - places.mean(axis=0), axis=1).argmax())
