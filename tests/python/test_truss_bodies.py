@@ -290,3 +290,25 @@ def test_bounds_of_bodies_contain_the_jump() -> None:
     largest = max(bound.jump for bound in found.bounds)
     assert jumped <= largest * (1 + 1e-6)
     assert largest <= 1.001 * jumped  # the cycle slips both ways, so it reaches the bound
+
+
+def divided_case(change_K: float) -> Any:
+    """Return the brackets with each body divided at its corner into two that share a node."""
+    data = bracket_case(True, change_K=change_K).origin.document
+    nodes, bodies = list(data["node"]), []
+    for side, positions in (("L", BRACKET), ("R", BRACKET * [1.0, 1.0, -1.0] + [0.0, 0.0, 0.06])):
+        nodes.append({"name": f"{side}1", "position_m": positions[1].tolist()})
+        for first, axis in ((0, Y), (1, Z)):
+            part = frame_body(positions[first:first + 2], [(0, 1, axis)], (0, 1), ("first", "second"))
+            bodies.append({"name": f"{side}{first}{first + 1}", "nodes": [f"{side}{first}", f"{side}{first + 1}"],
+                           "content": part})
+    return sj.load({**data, "node": nodes, "body": bodies})
+
+
+def test_divided_bodies_give_the_same_jump() -> None:
+    def difference(change_K: float) -> float:
+        whole, divided = jump(bracket_case(True, change_K=change_K))[1], jump(divided_case(change_K))[1]
+        return float(np.abs(whole - divided).max() / np.abs(whole).max())
+
+    some, fewer = difference(60.0), difference(6.0)
+    assert FALLS * fewer <= some <= 1e-4
