@@ -2,7 +2,7 @@
 """Outputs of a truss that are bounded: displacements of nodes along the axes."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.bounds.sliding import AXES, Sliding
 from statejump.kinds.truss.references import known_name
+from statejump.kinds.truss.resolved import ResolvedTruss
 
 SHOWN = 3  # nodes, if no output is chosen
 DENSE = 2e7  # entries of the compliance of all dofs for which the most moved nodes are found
@@ -39,21 +40,27 @@ def chosen(of: Sliding, names: Sequence[str]) -> list[Output]:
     """
     if not names:
         return _largest(of)
-    return [output for name in names for output in _named(of, name)]
+    return [output for name in names
+            for output in named(of.truss, name, lambda dof: bool(abs(of.of_nodes[dof]).sum() > 0))]
 
 
-def _named(of: Sliding, name: str) -> list[Output]:
-    nodes = of.truss.nodes.names
+def named(truss: ResolvedTruss, name: str, moves: Callable[[int], bool]) -> list[Output]:
+    """Return the outputs ``node:NAME.x``, or for ``node:NAME`` those of all free directions of the node.
+
+    :param moves: whether a dof, three per node, is free
+    :raises NotAllowed: the name is not that of a node and a free direction
+    """
+    nodes = truss.nodes.names
     what, _, rest = name.partition(":")
-    node, axes = rest, AXES[:of.truss.dimension]
+    node, axes = rest, AXES[:truss.dimension]
     if rest not in nodes and rest[-2:-1] == "." and rest[-1] in AXES:
         node, axes = rest[:-2], rest[-1]
     if what != "node":
         raise NotAllowed("output", name, code="bounds_bad_output")
-    known_name("output", name, node, dict.fromkeys(nodes), "node", case=of.truss.name)
+    known_name("output", name, node, dict.fromkeys(nodes), "node", case=truss.name)
     index = nodes.index(node)
     found = [Output(f"node:{node}.{axis}", index, AXES.index(axis)) for axis in axes
-             if abs(of.of_nodes[3 * index + AXES.index(axis)]).sum() > 0]
+             if moves(3 * index + AXES.index(axis))]
     if not found:
         raise NotAllowed("output", name, code="bounds_bad_output")
     return found
