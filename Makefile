@@ -9,7 +9,7 @@ configure = { test -e $(BUILD)/build.ninja || cmake --preset demo -B $(BUILD); }
             cmake $(foreach part,$(1),-DSTATEJUMP_BUILD_$(part)=ON) $(BUILD) >/dev/null
 compile = cmake --build $(BUILD) --parallel $(JOBS)
 
-.PHONY: demo build tests test check quick bench package docs sanitize sanitize-threads sanitize-yade format clean
+.PHONY: demo build tests test check quick bench package validation docs sanitize sanitize-threads sanitize-yade format clean
 demo:
 	./scripts/setup.sh run build
 	$(call configure)
@@ -50,6 +50,13 @@ bench:
 package: build
 	./scripts/setup.sh package
 	cd $(BUILD) && cpack
+
+# Entries of the validation manual: fails if a verdict differs from the kept one.
+validation:
+	./scripts/setup.sh run build
+	$(call configure)
+	$(compile) --target models
+	PYTHONPATH=$(BUILD)/python $(PYTHON) studies/validation/make_manual.py --check
 
 docs:
 	./scripts/setup.sh run build docs

@@ -8,7 +8,8 @@ The table has a row for each deck of Nastran, CalculiX or Abaqus: units, whether
 failure, largest displacement [m]. A deck of modes, or with neither supports nor loads, runs as modes: its row has
 frequencies. If ``ccx`` is installed, rows of CalculiX decks also have the largest difference of displacements between
 both programs, over the largest displacement. This comparison is linear: loads are multiplied by a small factor, and
-*STEP, NLGEOM is removed for CalculiX. Decks with beams are compared with a Poisson's ratio of 0, and B31 as B32.
+*STEP, NLGEOM is removed for CalculiX. Decks with beams are compared with a Poisson's ratio of 0, and
+B31 and B32 as B32R.
 ``--temperature-change`` sets ΔT for decks without temperatures. Every deck runs in a separate process. Exit status 1:
 an import or a run ended with neither a result nor a message.
 """

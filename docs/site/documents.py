@@ -2,7 +2,8 @@
 """Copies the Markdown documents of the repository as pages of the site. Folders are the same, so links stay valid.
 
 A link to a file that is not a page becomes a download. docs/index.md defines the sidebar: each section is a part of it,
-with the pages that the section links to, in their order.
+with the pages that the section links to, in their order. A page ``index.md`` in another folder is a chapter: its part
+of the sidebar has the pages of its folder.
 """
 from __future__ import annotations
 
@@ -89,6 +90,16 @@ def up(page: Path) -> str:
     return "../" * len(page.parent.parts)
 
 
+def chapters(text: str, page: Path, source: Path) -> list[str]:
+    """Return the pages beside an index page, other than the start page, that it links to."""
+    if page.name != START.name or page == START:
+        return []
+    found = (local_target(page, target) for target in links(text))
+    beside = [f"/{target.with_suffix('')}" for target in found
+              if target and target.suffix == ".md" and target.parent == page.parent and (source / target).exists()]
+    return list(dict.fromkeys(beside))
+
+
 def add_way(source: Path, generated: dict[str, list[tuple[str, str]]]) -> None:
     """Add tables of contents to the start page: the pages that its sections link to, then generated pages by section.
 
@@ -115,6 +126,12 @@ def add_way(source: Path, generated: dict[str, list[tuple[str, str]]]) -> None:
         raise SystemExit(f"{START} has no section {', '.join(generated)}")
     restored = parts[0] + "".join(f"{parts[k]}\n{parts[k + 1]}" for k in range(1, len(parts), 2))
     (source / START).write_text(restored, encoding="utf-8")
+    for page in [Path(f"{one.lstrip('/')}.md") for one in listed]:
+        inner = chapters((source / page).read_text(encoding="utf-8"), page, source) if (source / page).exists() else []
+        if inner:
+            with (source / page).open("a", encoding="utf-8") as file:
+                file.write("\n```{toctree}\n:hidden:\n\n" + "\n".join(inner) + "\n```\n")
+            listed += inner
     reached = {Path(page.lstrip("/")) for page in listed} | {START.with_suffix("")}
     lost = [str(page) for page in (path.relative_to(source) for path in source.rglob("*.md"))
             if page.with_suffix("") not in reached]

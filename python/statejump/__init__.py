@@ -51,7 +51,7 @@ _PLACES = {
     **dict.fromkeys(("Column", "Event", "Run"), "statejump.core.run"),
     "Kind": "statejump.kinds.protocol",
 }
-_MODULES = {"body": "statejump.bodies", "errors": "statejump.core.errors", "fclib": "statejump.fclib",
+_MODULES = {"body": "statejump.body", "errors": "statejump.core.errors", "fclib": "statejump.fclib",
             "kinds": "statejump.kinds", "laws": "statejump.laws", "surface": "statejump.surface",
             "truss": "statejump.truss"}
 __all__ = ["__version__", *_PLACES, *_MODULES]

@@ -431,6 +431,7 @@ def truss_friction_free(
     programs: Sequence[ThermalProgram],
     *,
     constraints: _Items = ...,
+    start_friction: str = ...,
 ) -> dict[str, Any]: ...
 
 class BoreMesh(metaclass=_pybind11_type):

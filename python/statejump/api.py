@@ -71,7 +71,7 @@ def worst(case: Case, range_K: str | tuple[float, float], *, output: Sequence[st
     """Search for the temperature histories with the largest state jump and the largest excursion of a truss.
 
     :param range_K: lowest and highest ΔT [K] of every member
-    :param output: ``node:NAME`` or ``node:NAME.x``; default: the displacement that may differ most
+    :param output: as for bounds, for example ``node:NAME.x``; default: the displacement that may differ most
     :param groups: patterns of names, separated by commas; members of a group have one common temperature
     :param cycles: largest number of cycles of a history
     :param paths: number of paths for each quantity of each output

@@ -7,7 +7,6 @@ import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from statejump.core.scratch import scratch
 
 PROGRAM = "ccx"
 LONGEST_S = 120.0
-_HEAD = re.compile(r"displacements \(vx,vy,vz\) for set (\S+) and time +(\S+)")
+_HEAD = re.compile(r"(displacements|stresses) \([^)]*\) for set (\S+) and time +\S+")
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,14 @@ class Answer:
 
 
 def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarray]]:
-    """Run a deck and return the displacements [m] of a node set by node number, for every printed increment.
+    """Run a deck and return the displacements [m] of a node set by node number, for every printed increment; see
+    :func:`printed`."""
+    return [{number: value for (number, *_), value in step.items()}
+            for step in tables(printed(deck), "displacements", set_name)]
+
+
+def printed(deck: Sequence[str]) -> str:
+    """Run a deck and return what it prints.
 
     :raises StatejumpError: CalculiX is not installed
     :raises FailedRun: the run was not completed
@@ -54,21 +60,26 @@ def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarr
                 if "*ERROR" in line]
         if done.returncode or said or "Job finished" not in done.stdout:
             raise FailedRun(code="calculix_failed", cause=said[0] if said else None)
-        return _read(folder / "deck.dat", set_name)
+        return (folder / "deck.dat").read_text(encoding="ascii", errors="replace")
 
 
-def _read(path: Path, set_name: str) -> list[dict[int, np.ndarray]]:
-    found: list[dict[int, np.ndarray]] = []
+def tables(text: str, what: str, set_name: str) -> list[dict[tuple[int, ...], np.ndarray]]:
+    """Return the printed numbers of a set, for every printed increment.
+
+    :param what: displacements, by node number; or stresses, by element and point of integration
+    """
+    found: list[dict[tuple[int, ...], np.ndarray]] = []
     wanted = False
-    for line in path.read_text(encoding="ascii", errors="replace").splitlines():
+    places = 2 if what == "stresses" else 1
+    for line in text.splitlines():
         head = _HEAD.search(line)
         if head:
-            wanted = head[1].upper() == set_name.upper()
+            wanted = head[1] == what and head[2].upper() == set_name.upper()
             if wanted:
                 found.append({})
         elif wanted and line.strip():
-            words = line.split()
-            found[-1][int(words[0])] = np.array([float(word) for word in words[1:4]])
+            words = line.split()[:places + (6 if what == "stresses" else 3)]
+            found[-1][tuple(map(int, words[:places]))] = np.array([float(word) for word in words[places:]])
     return found
 
 

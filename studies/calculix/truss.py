@@ -27,7 +27,7 @@ from statejump.kinds.truss.joints.slider import SLIDER, with_sliders
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.sections import TrussThermal
 from statejump.kinds.truss.solve import whole_path
-from studies.calculix import ccx, truss_sliding
+from studies.calculix import ccx, frame_path, truss_sliding
 from studies.calculix.ccx import number
 
 Numbers = NDArray[np.float64]
@@ -45,6 +45,8 @@ def answer(case: TrussCase) -> ccx.Answer:
     :raises StatejumpError: CalculiX is missing or failed
     """
     truss = case.resolve()
+    if truss.elements["beam"].names:
+        return frame_path.answer(case, truss)
     _refuse(truss)
     locked = pinned(truss)
     changes = _hottest(case, truss)
@@ -80,10 +82,9 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
 
     :raises NotAllowed: the truss has other joints or features that this deck does not support
     """
-    if truss.number_of_joints() > len(truss.sliders.names) or truss.sticking == "partial_slip":
+    if truss.number_of_joints() > len(truss.sliders.names):
         raise NotAllowed("joints", code="fe_other_joints")
-    for index in np.flatnonzero(truss.sliders.have_springs)[:1]:
-        raise NotAllowed("slider", code="fe_soft_sliders", item=f"slider {truss.sliders.names[index]!r}")
+    truss_sliding.refuse_sliders(truss)
     if truss.start_friction == FRICTIONLESS:
         raise NotAllowed("start.friction", truss.start_friction, code="fe_start_friction")
     return truss_sliding.rows(case, truss)

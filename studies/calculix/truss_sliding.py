@@ -38,6 +38,7 @@ STEP = 1e-3  # factor of the solver's temperatures, loads, friction and clearanc
 # Displacements scaled by STEP are small to about STEP times strains of a few thousandths; sticking is rigid to 1/STICK.
 TOLERANCE = 1e-4
 LEAST_JUMP = 1e-2
+LEAST_FRICTION = 1e-6  # of sliders without friction, over the largest one of others: bricks yield at a positive stress
 
 
 def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quantity, ...]]:
@@ -160,7 +161,7 @@ class Bricks:
                                *(f"{node}, {axis}, {number(factor)}" for node, axis, factor in terms)]
 
 
-def _bars(bricks: Bricks, stiffness: Numbers) -> list[int]:
+def bars(bricks: Bricks, stiffness: Numbers) -> list[int]:
     """Add the bricks of the links; return the first corner node of each brick."""
     links, positions = bricks.truss.links, bricks.truss.nodes.position_m
     corners_of = []
@@ -174,29 +175,48 @@ def _bars(bricks: Bricks, stiffness: Numbers) -> list[int]:
     return corners_of
 
 
-def _sliders(bricks: Bricks, rigid: float) -> list[tuple[int, float, float]]:
+def sliders(bricks: Bricks, rigid: float, longest: float) -> list[tuple[int, float, float]]:
     """Add the bricks of the sliders; for each slider with stops, return the end node of its brick and both clearances
-    [m]."""
-    truss, sliders = bricks.truss, bricks.truss.sliders
-    friction = sliders.friction_coefficient * sliders.normal_force_N
+    [m].
+
+    :param rigid: stiffness of sticking friction [N/m]
+    :param longest: length of the longest bar or beam [m]
+    """
+    truss, joints = bricks.truss, bricks.truss.sliders
+    friction = joints.friction_coefficient * joints.normal_force_N
+    least = LEAST_FRICTION * float(friction.max(initial=0.0)) or 1e-12 * rigid * longest
     sticks = np.full(len(friction), rigid)
     if truss.sticking != "rigid":
-        sticks = np.where(sliders.normal_force_N > 0, pads(sliders).tangential_N_per_m, rigid)
-    longest = float(truss.links.stress_free_length_m.max())
+        sticks = np.where(joints.normal_force_N > 0, pads(joints).tangential_N_per_m, rigid)
     stopped: list[tuple[int, float, float]] = []
-    for place, (one, two) in enumerate(sliders.nodes):
-        axis = sliders.axis[place]
+    for place, (one, two) in enumerate(joints.nodes):
+        axis = joints.axis[place]
         ends = [(one, 1.0), *([(two, -1.0)] if two != GROUND else [])]
         end = bricks.brick(STRETCH * longest, float(sticks[place]) * STRETCH * longest, 0.0,
-                           max(float(friction[place]), 1e-12 * rigid * longest))
+                           float(friction[place]) or least)
         bricks.tie(end, ends, axis)
         if two != GROUND:
             for across in np.linalg.svd(axis[None])[2][1:]:
                 bricks.tie(None, ends, across)
-        minus, plus = float(sliders.clearance_minus_m[place]), float(sliders.clearance_plus_m[place])
+        minus, plus = float(joints.clearance_minus_m[place]), float(joints.clearance_plus_m[place])
         if np.isfinite((minus, plus)).any():
             stopped.append((end, min(minus, longest), min(plus, longest)))
     return stopped
+
+
+def stop(end: int, minus: float, plus: float, stiffness: float, reach: float) -> list[str]:
+    """Return the nodes and the points of a spring that acts beyond two clearances of a brick's end."""
+    # spring from the held end of the brick to its other end
+    return [f"{end - 1}, {end}", f"{number(-stiffness * reach)}, {number(-minus - reach)}", f"0., {number(-minus)}",
+            f"0., {number(plus)}", f"{number(stiffness * reach)}, {number(plus + reach)}"]
+
+
+def refuse_sliders(truss: ResolvedTruss) -> None:
+    """Raise NotAllowed for sliders that the decks do not support."""
+    if truss.sticking == "partial_slip" and truss.sliders.names:
+        raise NotAllowed("joints", code="fe_other_joints")
+    for index in np.flatnonzero(truss.sliders.have_springs)[:1]:
+        raise NotAllowed("slider", code="fe_soft_sliders", item=f"slider {truss.sliders.names[index]!r}")
 
 
 def deck(truss: ResolvedTruss, times: list[float]) -> list[str]:
@@ -205,18 +225,16 @@ def deck(truss: ResolvedTruss, times: list[float]) -> list[str]:
     stiffness = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
     rigid, longest = STICK * float(stiffness.max()), float(links.stress_free_length_m.max())
     bricks = Bricks(truss)
-    heated = _bars(bricks, stiffness)
-    stopped = _sliders(bricks, rigid)
+    heated = bars(bricks, stiffness)
+    stopped = sliders(bricks, rigid, longest)
     for place, normal in enumerate(nodes.guide_normal):
         if normal.any():
             bricks.tie(None, [(place, 1.0)], normal)
     stops: list[str] = []
     for element, (end, minus, plus) in enumerate(stopped, start=bricks.element + 1):
-        # spring from the held end of the brick to its other end
-        stops += [f"*ELEMENT, TYPE=SPRINGA, ELSET=E{element}", f"{element}, {end - 1}, {end}",
-                  f"*SPRING, ELSET=E{element}, NONLINEAR",
-                  f"{number(-rigid * longest)}, {number(-minus - longest)}", f"0., {number(-minus)}",
-                  f"0., {number(plus)}", f"{number(rigid * longest)}, {number(plus + longest)}"]
+        ends, *points = stop(end, minus, plus, rigid, longest)
+        stops += [f"*ELEMENT, TYPE=SPRINGA, ELSET=E{element}", f"{element}, {ends}",
+                  f"*SPRING, ELSET=E{element}, NONLINEAR", *points]
     lines = ["*HEADING", f"statejump fe {truss.name}, sliders slip", "*NODE, NSET=JOINTS",
              *(f"{place}, " + ", ".join(map(number, where)) for place, where in enumerate(nodes.position_m, start=1)),
              "*NODE, NSET=BRICKS", *bricks.nodes, *bricks.sections, *stops, *bricks.equations,

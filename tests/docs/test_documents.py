@@ -40,6 +40,9 @@ def test_the_first_page_leads_to_every_other() -> None:
     start = documents.START
     targets = documents.links((REPOSITORY / start).read_text(encoding="utf-8"))
     reached = {Path("README.md"), start, *(documents.local_target(start, target) for target in targets)}
+    for page in [page for page in PAGES if page in reached and page != start]:
+        inner = documents.chapters((REPOSITORY / page).read_text(encoding="utf-8"), page, REPOSITORY)
+        reached |= {Path(f"{name.lstrip('/')}.md") for name in inner}
     assert [str(page) for page in PAGES if page not in reached] == []
 
 

@@ -56,7 +56,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "statejump.kinds.truss.draw_planar", "statejump.kinds.truss.draw_spatial", "statejump.kinds.truss.figure",
         "statejump.kinds.truss.page", "statejump.kinds.umbrella.figure",
     )),
-    ("api", ("statejump", "statejump.api", "statejump.truss")),
+    ("api", ("statejump", "statejump.api", "statejump.body", "statejump.truss")),
     ("cli", ("statejump.cli",)),
 )
 # Not part of layers and graph: the module of the engine, and the module that CMake writes.

@@ -70,8 +70,16 @@ def bracket(scale: float = 1.0, fine: bool = True, material: str = "70e9", densi
         + "*SOLID SECTION,ELSET=EALL,MATERIAL=AL\n*BOUNDARY\nC,1,3\n*STEP\n*STATIC\n*TEMPERATURE\nNALL,2.5\n*END STEP\n")
 
 
-def panel() -> str:
-    """A panel of aluminium, 1 x 0.5 m, 2 mm, with two hinge patches and two tip patches of 50 mm."""
+SANDWICH = ("*SHELL SECTION,ELSET=EALL,COMPOSITE\n0.0003,,AL\n0.01,,CORE\n0.0003,,AL\n*MATERIAL,NAME=CORE\n"
+            "*ELASTIC,TYPE=ENGINEERING CONSTANTS\n1e6,1e6,1e9,.1,.01,.01,1e5,2e8,\n2e8\n"
+            f"*EXPANSION\n{EXPANSION}\n*DENSITY\n50.\n")
+
+
+def panel(stiffened: bool = False, section: str = "*SHELL SECTION,ELSET=EALL,MATERIAL=AL\n0.002\n") -> str:
+    """A panel of aluminium, 1 x 0.5 m, 2 mm, with two hinge patches and two tip patches of 50 mm.
+
+    :param stiffened: whether a beam of 20 x 10 mm stiffens the line y = 0.25 m
+    """
     nodes, elements = Nodes(), []
     for j in range(10):
         for i in range(20):
@@ -83,7 +91,14 @@ def panel() -> str:
     return (_written(nodes, "S8R", elements, 1.0) + _sets(nodes, {
         "H1": square(0.025, 0.075), "H2": square(0.025, 0.425), "T1": square(0.975, 0.025), "T2": square(0.975, 0.475)})
         + f"*MATERIAL,NAME=AL\n*ELASTIC\n70e9,0.3\n*EXPANSION,ZERO=0.\n{EXPANSION}\n*DENSITY\n2700.\n"
-        + "*SHELL SECTION,ELSET=EALL,MATERIAL=AL\n0.002\n")
+        + section + (_stiffener(nodes) if stiffened else ""))
+
+
+def _stiffener(nodes: Nodes) -> str:
+    along = sorted(nodes.find(lambda p: abs(p[1] - 0.25) < 1e-9), key=lambda node: float(nodes.places[node - 1][0]))
+    return "*ELEMENT,TYPE=B32R,ELSET=STIFFENER\n" + "".join(
+        f"{1001 + k},{along[2 * k]},{along[2 * k + 1]},{along[2 * k + 2]}\n" for k in range(20)
+    ) + "*BEAM SECTION,ELSET=STIFFENER,MATERIAL=AL,SECTION=RECT\n0.02,0.01\n0,1,0\n"
 
 
 def closed_form(place: np.ndarray, constant: float, gradient: np.ndarray) -> np.ndarray:

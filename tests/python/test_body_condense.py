@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from brackets import EXPANSION, MASS_KG, bracket, closed_form, panel
+from brackets import EXPANSION, MASS_KG, SANDWICH, bracket, closed_form, panel
 from failures import failing
 import statejump as sj
 from statejump.bodies import CondensedBody
@@ -146,7 +146,22 @@ def test_panel_of_shells(tmp_path: Path) -> None:
         _, rows = patch(nodes, deck.positions, deck.faces(), None)
         bent.append(rows @ np.ravel([closed_form(deck.positions[node], 0.0, np.array([0, 0, 1.0])) for node in nodes]))
     expected = np.concatenate(bent)
-    assert scaled(without_rigid(body, body.free_shapes[1] - expected), 0.25) < 1e-4 * scaled(expected, 0.25)
+    assert scaled(without_rigid(body, body.free_shapes[1] - expected), 0.25) < 1e-5 * scaled(expected, 0.25)
+
+
+@pytest.mark.parametrize(("deck", "mass_kg"), [
+    (panel(stiffened=True), 2.7 + 0.54), (panel(section=SANDWICH), 0.5 * (2 * 0.0003 * 2700 + 0.01 * 50))],
+    ids=["stiffened", "sandwich"])
+def test_stiffened_and_sandwich_panels(tmp_path: Path, deck: str, mass_kg: float) -> None:
+    (tmp_path / "panel.inp").write_text(deck)
+    body = sj.body.condense(tmp_path / "panel.inp", ["H1", "H2", "T1", "T2"])
+    assert body.measured.rigid_error < 1e-7 and body.measured.mass_kg == pytest.approx(mass_kg, rel=1e-4)
+    plane = np.hstack([EXPANSION * body.node_positions_m, np.zeros((4, 3))]).ravel()
+    assert scaled(without_rigid(body, body.free_shapes[0] - plane)) < 1e-6 * scaled(plane)
+    if "STIFFENER" in deck:
+        with failing("condense_beam_node"):
+            (tmp_path / "panel.inp").write_text(deck.replace("*MATERIAL", "*NSET,NSET=E\n290,\n291,\n292,\n293,\n294,\n*MATERIAL", 1))
+            sj.body.condense(tmp_path / "panel.inp", ["E"])
 
 
 @pytest.mark.parametrize("count", [3, 4, 6, 8])
@@ -188,7 +203,7 @@ def test_wrong_arguments_are_refused(coarse: Path, interfaces: list[str], patter
 @pytest.mark.parametrize(("old", "new", "code", "fields"), [
     ("*SOLID SECTION", "*PLASTIC\n1e8,0.\n*SOLID SECTION", "condense_keyword", {"keyword": "PLASTIC"}),
     ("*ELASTIC\n70e9,0.3\n", "*ELASTIC\n70e9,0.3,0.\n60e9,0.3,100.\n", "condense_not_constant", {"keyword": "ELASTIC"}),
-    ("TYPE=C3D20R", "TYPE=B32R", "condense_element", {"kind": "B32R"}),
+    ("TYPE=C3D20R", "TYPE=T3D3", "condense_element", {"kind": "T3D3"}),
     ("*BOUNDARY", "*INITIAL CONDITIONS,TYPE=TEMPERATURE\nA,0.\nB,5.\n*BOUNDARY", "condense_initial", {}),
     ("NALL,2.5", "A,2.5", "condense_node_cold", {}),
     ("*SOLID SECTION,ELSET=EALL", "*SOLID SECTION,ELSET=ENONE", "calculix_failed", {}),

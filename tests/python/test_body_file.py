@@ -2,6 +2,8 @@
 """Condensed bodies: arrays, files, what reading measures, and the cause that a refusal names."""
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -230,3 +232,10 @@ def test_modes_follow_the_nodes() -> None:
     body = made(both)
     assert body.modes == 2 and body.measured.rigid_error < 1e-13
     assert not body.rigid_motions[18:].any()
+
+
+def test_kinds_may_import_bodies() -> None:
+    code = ("import sys; import statejump.bodies.body, statejump.bodies.files; "
+            "print(sorted(name for name in sys.modules if name.startswith('statejump.kinds')))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -12,6 +12,7 @@ import pytest
 from failures import failing
 from frames import POSITIONS_M, stiffness
 from statejump.bodies.body import CondensedBody
+from statejump.bodies.formats import bulk
 from statejump.bodies.importing import import_body
 from statejump.kinds.truss.importing.to_case import Units
 
@@ -242,3 +243,27 @@ def test_incomplete_files_are_refused(tmp_path: Path) -> None:
         import_body([tmp_path / "t.op4"])
     with failing("file_not_found"):
         import_body([tmp_path / "none.op4"])
+
+
+def test_fields_of_dmig_are_cut_by_columns(tmp_path: Path) -> None:
+    (tmp_path / "x.pch").write_text(
+        "DMIG    KAAX           0       6       2       0                               1\n"
+        "DMIG*   KAAX                           1               1                       2\n"
+        "*                      1               1 1.000000000D+00                       3\n"
+        "*                      3               5-2.500000000D+03                       4\n"
+        "DMIG    KAAX    3       5               3       5       1.45+8\n"
+        "                                        9       0       -2.5-3\n"
+        "DMIG,KAAX,9,0,,9,0,7.5\n"
+        "DMIG    CAAX           0       6       4       0\n"
+        "DMIG    CAAX    1       1               1       1       1.0     2.0\n")
+    content = bulk.read([tmp_path / "x.pch"])
+    assert list(content.matrices) == ["KAAX"]
+    found = content.matrices["KAAX"]
+    assert found.rows == found.columns == ((1, 1), (3, 5), (9, 0))
+    assert found.values.tolist() == [[1.0, -2500.0, 0.0], [-2500.0, 1.45e8, -2.5e-3], [0.0, -2.5e-3, 7.5]]
+
+
+def test_contradicting_entries_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "x.pch").write_text("DMIG,KAAX,0,1,2,0\nDMIG,KAAX,1,1,,1,1,1.0\nDMIG,KAAX,1,1,,1,1,2.0\n")
+    with failing("matrix_entry_twice", matrix="KAAX", row=[1, 1], column=[1, 1]):
+        import_body([tmp_path / "x.pch"])

@@ -84,10 +84,22 @@ def test_returns_of_a_truss_are_those_of_every_program() -> None:
     assert np.linalg.norm(moved[1] - moved[0]) > 1e-6
 
 
+def test_bounds_are_those_of_the_varied_case() -> None:
+    limits = [50.0, 100.0]
+    names = ["bound:spread_m[node:C.x]", "bound:jump_m[node:C.x]", "jump:displacement_m[C].x"]
+    found = sj.sweep(sj.load("telescope"), {"slider.S.normal_force_N": limits}, outputs=names).frame()
+    case = sj.load("telescope").definition
+    whole = case.bounds(output=["node:C.x"], simulate=False).bounds[0].spread_m
+    assert found[names[0]].to_numpy() == pytest.approx(whole * np.array(limits) / case.slider[0].normal_force_N, rel=1e-9)
+    assert np.all(np.abs(found[names[2]]) <= found[names[1]] * (1 + 1e-6))
+
+
 @pytest.mark.parametrize("output, sentence", [
+    ("bound:spread_m", failure("output_bound_not_chosen", key="outputs", value="bound:spread_m")),
+    ("bound:spread_m[Q]", failure("output_item_undefined", key="outputs", value="bound:spread_m[Q]", what_it_is="output of bounds", known="node:NAME.x, rms, tilt, zernike:K, point")),
     ("max:surface.rms_rigid_m", failure("output_without_surface", key="outputs")),
     ("jump", failure("bad_output_name", key="outputs", value="jump")),
-    ("mean:displacement_m[N1]", failure("output_how_unknown", key="outputs", value="mean:displacement_m[N1]", hows="end, jump, max, min, range, repeat")),
+    ("mean:displacement_m[N1]", failure("output_how_unknown", key="outputs", value="mean:displacement_m[N1]", hows="end, jump, max, min, range, repeat, bound")),
     ("repeat:displacement_m[N1]", failure("output_without_jump", key="outputs", value="repeat:displacement_m[N1]", times=1)),
     ("jump:displacment_m[N1]", failure("output_misspelt", key="outputs", value="jump:displacment_m[N1]", meant="displacement_m")),
     ("jump:displacement_m", failure("output_item_not_chosen", key="outputs", value="jump:displacement_m", column="displacement_m", items="nodes")),

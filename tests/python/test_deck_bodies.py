@@ -182,7 +182,7 @@ REFUSED = {
     "warm rod": ("RROD,9,2,4,,,1.-5\n", failure("deck_not_supported", card="RROD.ALPHA", reason="no_truss")),
     "rod without length": ("RROD,9,2,3\n", failure("deck_bad_geometry", card="RROD", problem="nodes 2 and 3 are at one position")),
     "turning equation": ("MPC,7,4,1,1.,3,5,-1.\n", failure("deck_not_supported", card="MPC", reason="rotation")),
-    "loaded mean": ("RBE3,9,,5,123,1.,123,2,4\nFORCE,5,5,,1.,1.,0.,0.\n", failure("deck_not_supported", card="RBE3", reason="load_distribution")),
+    "mean of nodes on a line": ("RBE3,9,,5,123,1.,123,2,4\nFORCE,5,5,,1.,1.,0.,0.\n", failure("deck_not_supported", card="RBE3", reason="mean_undetermined")),
     "turned mean": ("RBE3,9,,5,123,1.,123,2,4\nMOMENT,5,5,,1.,1.,0.,0.\n", failure("deck_not_supported", card="RBE3", reason="load_distribution")),
     "support of a free body": ("SUPORT,2,1\n", failure("deck_not_supported", card="SUPORT", reason="no_truss")),
 }

@@ -12,8 +12,10 @@ from conftest import Outcome
 from failures import Failure, failure
 
 import statejump as sj
+from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.generate.document import to_toml
 from studies import calculix
+from studies.calculix import cases, frame as frames
 from studies.calculix.spring_slider import kinks
 
 BAR = {"young_modulus_Pa": 7e10, "cross_section_area_m2": 1e-4, "thermal_expansion_per_K": 2.3e-5,
@@ -143,6 +145,119 @@ def test_sliders_slip_in_both_alike(what: str) -> None:
         assert jump.values["fe"] == pytest.approx(jump.values["reduced"], rel=1e-6) and jump.passed
         return
     assert [event.kind for event in case.reduced().events].count("stop_reached") == 2
+
+
+BENDING = {"portal": (2.978385e-3, 1610.5095, 0.0), "boom": (1.162559e-2, 8.0, 3.974977e-3),
+           "hinge_line": (1.133898e-2, 2.814237, 2.542373e-3), "umbrella_rib_bending": (2.903396e-4, 1.347858e-2, 1.195087e-5),
+           "mast_6_bending": (1.079531e-2, 11.72639, 1.231462e-3)}
+
+
+def test_the_cases_are_those_of_their_maker() -> None:
+    found = dict(cases.texts())
+    assert len(found) == 3
+    assert found == {name: (cases.FOLDER / name).read_text() for name in found}
+
+
+@with_calculix
+@pytest.mark.parametrize("name", BENDING)
+def test_beams_hinges_and_sliders_agree_to_2e_5(name: str) -> None:
+    """Sticking friction of CalculiX gives way by 1e-5; its displacements have seven digits."""
+    rows = calculix.answer(sj.load(f"cases/trusses/{name}.toml").definition).rows
+    assert [row.name for row in rows] == ["largest_displacement", "largest_bending_moment", "largest_jump"]
+    for row, wanted in zip(rows, BENDING[name]):
+        assert row.passed and row.difference < 2e-5, row
+        assert row.values["reduced"] == pytest.approx(wanted, rel=1e-5, abs=1e-9)
+
+
+def test_the_rectangle_of_a_beam_has_its_stiffness() -> None:
+    """A shape that is not a rectangle: a channel, whose area and moments give a rectangle of another modulus."""
+    made = frame(beam={"shape": "channel", "dimensions_m": [0.06, 0.03, 0.002, 0.002], "axis_y": None})
+    truss = sj.load(made).definition.resolve()
+    items = truss.elements["beam"]
+    deck = frames.Frame(truss)
+    frames.beams(deck)
+    height, width = deck.sides[0]
+    at = next(place for place, line in enumerate(deck.sections) if line.startswith("*ELASTIC"))
+    young = float(deck.sections[at + 1].split(",")[0])
+    assert young * height * width == pytest.approx(items.axial_stiffness_N[0])
+    assert young * height**3 * width / 12 == pytest.approx(items.bending_stiffness_N_m2[0, 1])
+    assert young * height * width**3 / 12 == pytest.approx(items.bending_stiffness_N_m2[0, 0])
+
+
+def frame(dimension: int = 2, beam: dict[str, Any] | None = None, **more: Any) -> dict[str, Any]:
+    """Return a bent cantilever of two beams with a load and a moment at its tip; axes of sections are tilted."""
+    points = {"A": [0.0, 0.0, 0.0], "B": [0.8, 0.6, 0.0], "C": [1.2, 0.5, 0.7 if dimension == 3 else 0.0]}
+    keys = {"shape": "rectangle", "dimensions_m": [0.03, 0.02], "young_modulus_Pa": 7e10,
+            "thermal_expansion_per_K": 2e-5, "gradient_per_m": [10.0, 20.0 if dimension == 3 else 0.0],
+            **({"axis_y": [-0.3, 0.5, 0.4]} if dimension == 3 else {}), **(beam or {})}
+    nodes: list[dict[str, Any]] = [{"name": name, "position_m": where[:dimension]} for name, where in points.items()]
+    nodes[0] |= {"fixed": list("xyz"[:dimension]), "fixed_rotations": list("xyz" if dimension == 3 else "z")}
+    nodes[2] |= {"force_N": [20.0, -30.0, 25.0][:dimension]}
+    keys = {key: value for key, value in keys.items() if value is not None}
+    return {"case": {"name": "frame", "kind": "truss"}, "truss": {"dimension": dimension}, "node": nodes,
+            "beam": [{"name": "".join(ends), "nodes": list(ends), **keys} for ends in ("AB", "BC")],
+            "thermal": {"shape": "triangle", "temperature_change_max_K": 50.0}, **more}
+
+
+def propped(dimension: int = 2, **ends: Any) -> dict[str, Any]:
+    """Return the frame with its tip held, and keys of its second beam."""
+    made = frame(dimension)
+    made["node"][2] = {"name": "C", "position_m": made["node"][2]["position_m"], "fixed": list("xyz"[:dimension]),
+                       "fixed_rotations": list("xyz" if dimension == 3 else "z")}
+    made["node"][1]["force_N"] = [400.0, -300.0, 200.0][:dimension]
+    made["beam"][1] |= ends
+    return made
+
+
+def carried() -> dict[str, Any]:
+    """Return the frame whose second beam begins at another node, which a rigid body carries."""
+    made = propped()
+    made["node"].append({"name": "D", "position_m": [0.85, 0.7]})
+    made["beam"][1]["nodes"] = ["D", "C"]
+    made["rigid"] = [{"name": "R", "master": "B", "nodes": ["D"], "rotations": ["x", "y", "z"]}]
+    return made
+
+
+def jointed(**hinge: Any) -> dict[str, Any]:
+    """Return the frame with a hinge between its beams."""
+    made = propped()
+    made["node"].append({"name": "D", "position_m": [0.8, 0.6]})
+    made["beam"][1]["nodes"] = ["D", "C"]
+    made["hinge"] = [{"name": "H", "nodes": ["B", "D"], **hinge}]
+    return made
+
+
+FRAMES: dict[str, Callable[[], dict[str, Any]]] = {
+    "moment": lambda: {**frame(), "node": [*frame()["node"][:2], {**frame()["node"][2], "moment_N_m": [7.0]}]},
+    "released moment": lambda: propped(released_first=["Rz"]),
+    "released force": lambda: propped(released_second=["Fx"]),
+    "offset": lambda: propped(offset_first_m=[0.05, 0.1]),
+    "in space, both moments released": lambda: propped(3, released_first=["Ry", "Rz"]),
+    "in space, offset": lambda: propped(3, offset_first_m=[0.05, 0.1, -0.05]),
+    "rigid body": carried,
+    "hinge": jointed,
+    "stiff hinge": lambda: jointed(stiffness_N_m_per_rad=3e3),
+    "hinge with play": lambda: jointed(stiffness_N_m_per_rad=3e3, deadband_rad=2e-4),
+    "hinge with friction and preload": lambda: jointed(stiffness_N_m_per_rad=3e3, friction_moment_N_m=2.0,
+                                                       preload_moment_N_m=3.0),
+}
+
+
+@with_calculix
+@pytest.mark.parametrize("what", FRAMES)
+def test_ends_of_beams_and_hinges_agree(what: str) -> None:
+    """In space, torsion of the bricks differs from that of the beam, so the limit is wider."""
+    rows = calculix.answer(sj.load(FRAMES[what]()).definition).rows
+    limit = 2e-2 if "space" in what else 1e-4
+    assert rows[0].values["reduced"] > 1e-4 and rows[1].values["reduced"] > 1.0
+    assert all(row.difference < limit for row in rows), rows
+
+
+def test_beams_beside_springs_are_refused() -> None:
+    spring = {"name": "S", "nodes": ["A", "C"], "stiffness_N_per_m": 1e3}
+    with pytest.raises(StatejumpError) as refused:
+        calculix.answer(sj.load(frame(spring=[spring])).definition)
+    assert refused.value == failure("fe_other_parts_with_beams", key="spring")
 
 
 @with_calculix

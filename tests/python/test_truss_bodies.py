@@ -278,5 +278,15 @@ def test_shipped_panel_is_that_of_its_deck() -> None:
     largest = np.abs(shipped.stiffness).max()
     # The condensation loses digits with the thickness: 1e-7 of forces beside 1e-16 of the mesh's stiffest entry.
     assert np.abs(made.stiffness - shipped.stiffness).max() <= 1e-7 * largest
-    for one, other in zip(made.free_shapes, shipped.free_shapes):
-        assert np.abs(one - other).max() <= 1e-7 * np.abs(one).max()
+    for one, other in zip(made.free_shapes, shipped.free_shapes):  # up to a rigid motion
+        assert np.abs(shipped.stiffness @ (one - other)).max() <= 1e-7 * largest * np.abs(one).max()
+
+
+def test_bounds_of_bodies_contain_the_jump() -> None:
+    """A free slider between bodies: its friction times the compliance of both, whatever the temperatures."""
+    case = bracket_case(True)
+    found = case.bounds(range_K="-60:60")
+    jumped = np.abs(jump(case)[1]).max()
+    largest = max(bound.jump for bound in found.bounds)
+    assert jumped <= largest * (1 + 1e-6)
+    assert largest <= 1.001 * jumped  # the cycle slips both ways, so it reaches the bound

@@ -25,7 +25,7 @@ BAR: dict[str, Any] = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-5, 
                        "density_kg_per_m3": 2700.0}
 STIFFNESS, FREE_m_per_K = 70e9 * 1e-5 / 0.5, 2e-5 * 0.5  # of a bar of 0.5 m
 SHIPPED_um = {"chain_10": 3217.5, "iwan_10": 936.0, "latch_boom": 13.7142857, "latch_lever": 6.85714286,
-              "telescope": 342.857143, "chain_cable": 952.380952}
+              "telescope": 342.857143, "chain_cable": 952.380952, "bolted_tubes": 342.857143}
 
 
 def chain(*limits_N: float, change_K: float = 100.0, **more: Any) -> dict[str, Any]:
@@ -63,7 +63,7 @@ def test_a_loaded_start_is_not_the_centre() -> None:
 @pytest.mark.parametrize("name", SHIPPED_um)
 def test_shipped_cases_reach_their_bound(name: str) -> None:
     found = bounds(sj.load(name), attain=True, simulate=False)
-    assert found.margin.quality == ("linear" if name.startswith("latch") else "exact")
+    assert found.quality == ("linear" if name.startswith("latch") else "exact")
     assert found.bounds[0].spread_m == pytest.approx(1e-6 * SHIPPED_um[name], rel=1e-6)
     for bound in found.bounds:
         assert bound.attained_m == pytest.approx(bound.spread_m, rel=1e-4)
@@ -122,6 +122,7 @@ def test_bounds_of_programs_do_not_depend_on_the_solver(monkeypatch: pytest.Monk
 
     class Wrong:
         status = 0
+        x = np.zeros(2)
 
         class ineqlin:
             marginals = -np.array([0.25])
@@ -171,7 +172,7 @@ def test_no_random_history_leaves_the_bounds(seed: int) -> None:
     rng = np.random.default_rng(seed)
     case, most_K = lattice(rng), float(10 ** rng.uniform(0.5, 2.3))
     found = bounds(sj.load(case), range_K=(-most_K, most_K), simulate=False)
-    assert found.margin.quality == "linear"
+    assert found.quality == "linear"
     states = [solve(sj.load(heated(case, rng, most_K))).states["displacement_m"][[0, -1]] for _ in range(3)]
     for bound in found.bounds:
         values = bound.output.value(np.concatenate(states))
@@ -197,7 +198,7 @@ def test_no_random_history_of_a_tripod_leaves_the_bounds(seed: int) -> None:
                                "friction_coefficient": 0.3, "normal_force_N": 10 ** rng.uniform(2, 3.3)})
     case = finished(made)
     found = bounds(sj.load(case), simulate=False)
-    assert found.margin.quality == "linear"
+    assert found.quality == "linear"
     states = [solve(sj.load(heated(case, rng, 100.0))).states["displacement_m"][[0, -1]] for _ in range(3)]
     for bound in found.bounds:
         assert np.ptp(bound.output.value(np.concatenate(states))) <= bound.spread_m * (1 + 1e-7) + bound.margin_m
@@ -210,7 +211,7 @@ def test_margin_covers_a_lever_that_turns_far() -> None:
     case["link"][1]["cross_section_area_m2"] = 2e-7
     found = bounds(sj.load(case), ["node:B.y"], attain=True, simulate=False)
     bound = found.bounds[0]
-    assert found.margin.quality == "linear" and bound.margin_m > 1e-3 * bound.spread_m
+    assert found.quality == "linear" and bound.margin_m > 1e-3 * bound.spread_m
     assert 0 < abs(bound.attained_m - bound.spread_m) <= bound.margin_m
 
 
@@ -231,9 +232,7 @@ def test_margin_of_one_turned_bar_bounds_its_exact_force() -> None:
 
 
 REFUSED = {
-    "clearance": ("umbrella_rib", {}, "bounds_of_clearance"),
-    "stop": ("telescope", {"clearance_plus_m": 1e-4}, "bounds_of_stop"),
-    "play": ("bolted_tubes", {}, "bounds_of_stop"),
+    "clearance": ("ball_tripod", {}, "bounds_of_clearance"),
     "no friction": ("telescope", {"friction_coefficient": 0.0}, "bounds_without_friction"),
 }
 
@@ -248,25 +247,12 @@ def test_trusses_without_bounds_are_refused(which: str) -> None:
         bounds(sj.load(case), simulate=False)
 
 
-def test_a_cable_or_a_play_at_its_edge_is_refused() -> None:
-    case = sj.load("chain_cable").to_dict()
-    case["spring"][0]["free_length_m"] = 1.5002
-    with failing("bounds_of_stop"):
-        bounds(sj.load(case), simulate=False)
-    case["spring"][0]["free_length_m"] = 1.49
-    assert "1 cable(s) stay taut in all rest states" in bounds(sj.load(case), simulate=False).facts
-    case = sj.load("latch_lever").to_dict()
-    case["latch_hinge"][0]["deadband_rad"] = 1e-6
-    with failing("bounds_of_stop"):
-        bounds(sj.load(case), simulate=False)
-
-
-def test_a_motion_that_only_friction_holds_is_named() -> None:
+def test_a_motion_that_nothing_holds_is_named() -> None:
     loose = chain(30.0)
     loose["node"].append(node("M", (1.0, 0.0), "y"))
-    loose["slider"].append(loose["slider"][0] | {"name": "S2", "nodes": ["M"]})
+    loose["slider"].append(loose["slider"][0] | {"name": "S2", "nodes": ["M"], "normal_force_N": 0.0})
     with failing("bounds_of_mechanism", nodes=("M",), mode="M (x)"):
-        bounds(sj.load(loose))
+        bounds(sj.load(loose), simulate=False)
 
 
 def test_a_truss_that_only_friction_keeps_from_buckling_is_refused() -> None:
@@ -289,7 +275,7 @@ def test_a_truss_that_only_friction_keeps_from_buckling_is_refused() -> None:
 
 def test_wrong_outputs_and_ranges_are_refused() -> None:
     case = sj.load(chain(30.0))
-    for output in ("N1", "rms", "node:N1.y"):
+    for output in ("N1", "node:N1.y"):
         with failing("bounds_bad_output"):
             bounds(case, [output])
     for range_K in ("20:80", "60", "-80:inf", (0.0, 0.0)):
@@ -299,7 +285,7 @@ def test_wrong_outputs_and_ranges_are_refused() -> None:
 
 def test_a_large_chain_takes_one_factorisation() -> None:
     found = bounds(sj.load(chain(*[1.0] * 2000)), ["node:N2000.x"])
-    assert found.margin.quality == "exact" and np.isnan(found.bounds[0].simulated_m)
+    assert found.quality == "exact" and np.isnan(found.bounds[0].simulated_m)
     assert found.bounds[0].spread_m == pytest.approx(2 * 2000 * 2001 / 2 / STIFFNESS, rel=1e-9)
 
 
@@ -313,10 +299,10 @@ def test_command_writes_a_case_that_attains_the_bound(statejump: Any, tmp_path: 
     middle = int(np.abs(path["time_s"] - path["time_s"][-1] / 2).argmin())
     reached = path["displacement_m"][middle, 1, 1] - path["displacement_m"][-1, 1, 1]
     assert reached == pytest.approx(record["bounds"][0]["spread_m"], rel=1e-4)
-    for name in ("bounds.png", "bounds_over_range.png"):
+    for name in ("bounds.png", "bounds_over_range.png", "bounds_joints.png"):
         assert (folder / name).stat().st_size > 1000
 
 
 def test_command_refuses_in_one_sentence(statejump: Any) -> None:
-    done: Outcome = statejump("bounds", "mast_6")
+    done: Outcome = statejump("bounds", "ball_tripod")
     assert done.status == 2 and done.failure.code == "bounds_of_clearance"

@@ -77,6 +77,44 @@ def test_equations_are_those_of_calculix(tmp_path: Path) -> None:
     assert float(row[6]) < 1e-6  # CalculiX prints seven digits
 
 
+# A cantilever of two elements, ten times as long as high each: fully integrated B32 lock in shear.
+CANTILEVER = """*NODE, NSET=NALL
+1, 0., 0., 0.
+2, 250., 0., 0.
+3, 500., 0., 0.
+4, 750., 0., 0.
+5, 1000., 0., 0.
+*ELEMENT, TYPE=B32, ELSET=BEAMS
+1, 1, 2, 3
+2, 3, 4, 5
+*MATERIAL, NAME=STEEL
+*ELASTIC
+210000., 0.3
+*BEAM SECTION, ELSET=BEAMS, MATERIAL=STEEL, SECTION=RECT
+50., 50.
+0., 1., 0.
+*BOUNDARY
+1, 1, 6
+*STEP
+*STATIC
+*CLOAD
+5, 2, -1.
+*END STEP
+"""
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not here: not every Debian has it")
+def test_fully_integrated_beams_are_compared_as_reduced_ones(tmp_path: Path) -> None:
+    (tmp_path / "beam.inp").write_text(CANTILEVER)
+    done = subprocess.run([sys.executable, SCRIPTS / "decks.py", tmp_path, "-j", "1", "--units", "mm-N"],
+                          capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": os.environ["STATEJUMP_PYTHON_DIR"]})
+    row = [cell.strip() for cell in done.stdout.splitlines()[2].split("|")[1:-1]]
+    assert row[2:4] == ["yes", "yes"], done.stdout
+    # Left: the shear factor, 1 of the bricks and 5/6 of the beam, is 3 EI/(k G A L²)/5 = 2.5e-4 of the displacement.
+    assert float(row[6].split()[0]) < 1e-3
+
+
 def test_the_deck_of_calculix_ends_with_a_step_and_is_linear() -> None:
     again = TRUSS + 2 * TRUSS[TRUSS.index("*STEP"):]
     text = decks_ccx.printing(again, 2, [2, 1])

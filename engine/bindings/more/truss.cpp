@@ -706,16 +706,20 @@ py::dict linearised(const py::dict& nodes, const py::dict& elements, const py::d
 }
 
 py::dict friction_free_of(const py::dict& nodes, const py::dict& elements, const py::dict& joints,
-                          std::vector<thermal::Program> programs, const py::dict& constraints) {
+                          std::vector<thermal::Program> programs, const py::dict& constraints,
+                          const std::string& start_friction) {
   const truss::Model model = make_model(nodes, elements, joints, constraints, std::move(programs));
+  const auto from = start_friction_of(start_friction);
   truss::FrictionFree found;
   {
     py::gil_scoped_release unlocked;
-    found = truss::friction_free(model);
+    found = truss::friction_free(model, from);
   }
   py::dict made;
   made["stiffness_N_per_m"] = std::move(found.stiffness);
   made["guides"] = std::move(found.guides);
+  made["guide_joint"] = std::move(found.guide_joint);
+  made["load_N"] = std::move(found.load);
   made["slides"] = std::move(found.slides);
   made["heating_N_per_K"] = std::move(found.heating);
   made["of_nodes"] = std::move(found.of_nodes);
@@ -804,9 +808,12 @@ void bind_friction_free(py::module_& module) {
   module.def(
       "truss_friction_free", friction_free_of, py::arg("nodes"), py::arg("elements"),
       py::arg("joints"), py::arg("programs"), py::kw_only(), py::arg("constraints") = py::dict(),
-      "Equations about the equilibrium without friction, every friction joint free to slide."
-      "\n\nItems as of truss_path(). Returns sparse matrices of scipy: stiffness_N_per_m, "
-      "guides, slides\n(joints, dofs), heating_N_per_K (dofs, elements), of_nodes; of each "
+      py::arg("start_friction") = "frictionless",
+      "Equations about an equilibrium, every friction joint free to slide.\n\nItems and "
+      "start_friction as of truss_path(): 'frictionless' is the equilibrium without "
+      "friction.\nReturns sparse matrices of scipy: stiffness_N_per_m, guides, slides\n"
+      "(joints, dofs), heating_N_per_K (dofs, elements), of_nodes; load_N of joint "
+      "forces; guide_joint of each guide (-1: none); of each "
       "joint, kind by kind as of\ntruss_joints(): friction_limit_N (NaN: not given), slide_m,"
       " sticking_stiffness_N_per_m,\nfull_slip_m, radius_m; displacement_m (nodes, 3).");
 }

@@ -21,7 +21,7 @@ constexpr std::size_t nodes_at_once = 50000;
 /// moves_along() [-].
 constexpr double least_motion = 1e-9;
 
-/// Whether an element or a joint rotates a node, for every node.
+/// Whether an element, a joint or a constraint rotates a node, for every node.
 std::vector<bool> rotating_nodes(const Model& model) {
   const auto nodes = static_cast<int>(model.nodes.size());
   std::vector<bool> rotates(model.nodes.size(), false);
@@ -36,6 +36,9 @@ std::vector<bool> rotating_nodes(const Model& model) {
     }
   };
   std::apply([&](const auto&... lists) { (ask(lists), ...); }, model.lists());
+  for (const Constraint& constraint : model.constraints) {
+    for (const ConstraintTerm& term : constraint.terms) rotate(term.node);
+  }
   for (const Joint& joint : model.joints) {
     if (!has_ties(joint)) continue;
     for (const int site :

@@ -97,7 +97,9 @@ void split_rows(const detail::System& system, const linear::SparseView& jacobian
   const Index n = system.displacements();
   const auto joints = static_cast<int>(system.model().joints.size());
   std::vector<int> joint_of(static_cast<std::size_t>(system.unknowns() - n), -1);
+  made.guide_joint = Eigen::VectorXi::Constant(system.unknowns() - n, -1);
   for (int i = 0; i < joints; ++i) {
+    made.guide_joint.segment(system.force_row(i) - n, system.force_count(i)).setConstant(i);
     if (system.force_count(i) > 0) {
       joint_of[static_cast<std::size_t>(system.force_row(i) - n)] = i;
     }
@@ -121,10 +123,10 @@ void split_rows(const detail::System& system, const linear::SparseView& jacobian
 
 }  // namespace
 
-FrictionFree friction_free(const Model& model) {
+FrictionFree friction_free(const Model& model, StartFriction from) {
   model.validate();
   MotionOptions options;
-  options.start_friction = StartFriction::frictionless;
+  options.start_friction = from;
   const State start = detail::equilibrium(model, options).value();
   const detail::System system(model);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(system.unknowns());
@@ -136,6 +138,7 @@ FrictionFree friction_free(const Model& model) {
   const linear::SparseView jacobian = at.jacobian();
   FrictionFree made;
   made.stiffness = jacobian.topLeftCorner(system.displacements(), system.displacements());
+  made.load = -at.residual.head(system.displacements());
   split_rows(system, jacobian, made);
   made.heating = heating_of(system, z);
   made.of_nodes = detail::of_nodes(model, system.dofs());

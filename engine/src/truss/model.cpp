@@ -2,6 +2,7 @@
 #include "statejump/truss/model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -128,16 +129,20 @@ TemperatureRange range_of(const thermal::Program& program) {
 void check_constraint(const Constraint& constraint, const Model& model) {
   const std::string item = named(Constraint::kind, constraint.name);
   check(!constraint.terms.empty(), item, "number of terms", 0.0, ">= 1");
-  double largest = 0.0;
+  // Factors of displacements have no unit, those of rotations metres: each compares with its own.
+  std::array<double, 2> largest{};
+  const auto largest_beside = [&](const ConstraintTerm& term) -> double& {
+    return largest[term.node < rotation_site(model, 0) ? 0 : 1];
+  };
   for (const ConstraintTerm& term : constraint.terms) {
-    check_index(term.node, model.nodes.size(), item, "node");
+    check_index(term.node, 2 * model.nodes.size(), item, "node");
     check(term.factor.allFinite(), item, "factor", term.factor.norm(), "finite");
-    largest = std::max(largest, term.factor.norm());
+    largest_beside(term) = std::max(largest_beside(term), term.factor.norm());
   }
   for (const ConstraintTerm& term : constraint.terms) {
     const double size = term.factor.norm();
-    check(size > 0.0 && size >= Constraint::least_factor * largest, item, "factor", size,
-          "not 0, at least 1e-9 of the largest factor");
+    check(size > 0.0 && size >= Constraint::least_factor * largest_beside(term), item, "factor",
+          size, "not 0, at least 1e-9 of the largest factor");
   }
 }
 
@@ -154,6 +159,24 @@ void check_held_directions(const Model& model) {
       throw std::invalid_argument(named(kind_of(joint), name_of(joint)) +
                                   ": constraints hold its nodes in a direction that it holds "
                                   "itself; leave out the constraint of its nodes");
+    }
+  }
+}
+
+/// Calls `reach` with each node whose rotation is in a constraint, and the distances of the other
+/// nodes of the constraint.
+template <class Reach>
+void reach_constrained(const Model& model, const Reach& reach) {
+  const int count = rotation_site(model, 0);
+  for (const Constraint& constraint : model.constraints) {
+    for (const ConstraintTerm& term : constraint.terms) {
+      if (term.node < count || term.node >= 2 * count) continue;  // validate() rejects the last
+      const Node& node = model.nodes[static_cast<std::size_t>(term.node - count)];
+      for (const ConstraintTerm& other : constraint.terms) {
+        if (other.node < 0 || other.node >= count) continue;
+        const Node& far = model.nodes[static_cast<std::size_t>(other.node)];
+        reach(term.node - count, (far.position - node.position).norm());
+      }
     }
   }
 }
@@ -268,6 +291,7 @@ void measure_rotations(Model& model) {
       }
     }
   }
+  reach_constrained(model, reach);
   for (std::size_t n = 0; n < longest.size(); ++n) {
     if (longest[n] > 0.0) model.nodes[n].arm = longest[n];
   }

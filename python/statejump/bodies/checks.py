@@ -116,8 +116,6 @@ def checked_stiffness(
     scaled = (scaled + scaled.T) / 2
     motions = rigid_motions(positions_m, freedoms, len(given) - int(freedoms.sum()), positions_m.mean(axis=0))
     rigid_error = float(np.abs(scaled @ (motions / scale[:, None] * _units(positions_m))).max()) / largest
-    if np.linalg.eigvalsh(scaled)[-1] < NOTED * largest:
-        raise StatejumpError(code="body_negative")
     if rigid_error > REFUSED:
         code, details = cause_of(scaled / np.outer(scale, scale), names, positions_m, freedoms)
         raise StatejumpError(code=code, error=rigid_error, **details)
@@ -125,12 +123,14 @@ def checked_stiffness(
     scaled -= basis @ (basis.T @ scaled)
     scaled -= (scaled @ basis) @ basis.T
     scaled = (scaled + scaled.T) / 2
-    measured = _definite(scaled, basis.shape[1], asymmetry, rigid_error)
+    measured = _definite(scaled, basis.shape[1], asymmetry, rigid_error, largest)
     return scaled / np.outer(scale, scale), attrs.evolve(measured, notes=_notes(positions_m, measured))
 
 
-def _definite(scaled: Matrix, rigid: int, asymmetry: float, rigid_error: float) -> Measured:
+def _definite(scaled: Matrix, rigid: int, asymmetry: float, rigid_error: float, largest: float) -> Measured:
     values = np.linalg.eigvalsh(scaled)
+    if values[-1] < NOTED * largest:
+        raise StatejumpError(code="body_negative")
     bound = max(NOTED, 3 * asymmetry, 3 * rigid_error) * values[-1]
     if values[0] < -bound:
         raise StatejumpError(code="body_indefinite", eigenvalue=float(values[0] / values[-1]))

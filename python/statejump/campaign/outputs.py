@@ -6,12 +6,14 @@ Columns are those of the CSV files. Columns of links and contacts begin with ``l
 of a vector names no axis, its length is recorded. Columns of a reflecting surface, for example
 ``max:surface.pointing_error_rad``, are those of :func:`statejump.surface.history`. ``repeat`` is the largest difference
 of a value between a later return and the first one. At a return the temperature has its initial value again.
+``bound:spread_m[node:C.y]`` is the bound of an output over any temperature history, as in ``statejump bounds``.
 """
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -31,28 +33,37 @@ ALL: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "range": lambda values: np.ptp(values, axis=0)}
 JUMP = "jump"
 REPEAT = "repeat"  # of the times of Case.returns_s
+BOUND = "bound"  # of the rest states of a case; its columns are those of bounds.csv
 HOW: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     **ENDS, **ALL, REPEAT: lambda values: np.linalg.norm((values - values[0]).reshape(len(values), -1), axis=1).max()}
 WORDS = {"end": "{} at the end", "jump": "jump of {}", "max": "largest {}", "min": "smallest {}",
-         "range": "range of {}", REPEAT: "repeatability of {} from cycle to cycle"}
+         "range": "range of {}", BOUND: "bound, {}", REPEAT: "repeatability of {} from cycle to cycle"}
 SURFACE = "surface"
 # The pattern for editors, which do not support names of groups.
 PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
 LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
 
 
+@runtime_checkable
+class Bounded(Protocol):
+    """A case whose rest states have bounds."""
+
+    def bounds(self, **settings: Any) -> Any:
+        """Return the bounds, see docs/howto/bounds.md."""
+
+
 def parts(name: str) -> re.Match[str]:
     found = FORM.fullmatch(name) if isinstance(name, str) else None
     if found is None:
         raise NotAllowed("outputs", name, code="bad_output_name")
-    if found["how"] not in HOW:
-        raise NotAllowed("outputs", name, code="output_how_unknown", hows=", ".join(HOW))
+    if found["how"] not in (*HOW, BOUND):
+        raise NotAllowed("outputs", name, code="output_how_unknown", hows=", ".join((*HOW, BOUND)))
     return found
 
 
 def needs_all_samples(name: str) -> bool:
     """Whether an output needs every sample of a run."""
-    return parts(name)["how"] not in ENDS
+    return parts(name)["how"] not in (*ENDS, BOUND)
 
 
 def unit(name: str) -> str:
@@ -78,11 +89,15 @@ def values(names: Sequence[str], run: Run) -> dict[str, float]:
     :raises NotAllowed: the run has no such column, item or axis; the message suggests a similar name
     """
     columns: dict[tuple[str | None, bool], dict[str, Column]] = {}
-    found = {}
+    found: dict[str, float] = {}
     returned: Run | None = None
     if any(parts(name)["how"] == JUMP for name in names):
         run.definition.need_jump("an output 'jump:...'")
+    bounded = [name for name in names if parts(name)["how"] == BOUND]
+    found.update(_bounds(run, bounded) if bounded else {})
     for name in names:
+        if name in found:
+            continue
         asked = parts(name)
         group, repeats = asked["group"], asked["how"] == REPEAT
         if repeats and returned is None:
@@ -144,6 +159,29 @@ def _surface(run: Run, name: str) -> dict[str, Column]:
     except StatejumpError as refused:
         raise NotAllowed("outputs", name, refused.phrase(), code="output_without_surface",
                          remedy=refused.remedy) from None
+
+
+def _bounds(run: Run, names: Sequence[str]) -> dict[str, float]:
+    """Return bounds over any temperature history; they need the case of a run, not its samples."""
+    case = run.definition
+    if not isinstance(case, Bounded):
+        raise NotAllowed("outputs", names[0], code="output_without_bounds")
+    found: dict[str, float] = {}
+    for name in names:
+        asked = parts(name)
+        if asked["item"] is None:
+            raise NotAllowed("outputs", name, code="output_bound_not_chosen")
+        try:
+            bound = case.bounds(output=[asked["item"]], simulate=False).record()["bounds"][0]
+        except NotAllowed:
+            raise NotAllowed("outputs", name, code="output_item_undefined", what_it_is="output of bounds",
+                             known="node:NAME.x, rms, tilt, zernike:K, point") from None
+        if asked["column"] == "output" or asked["column"] not in bound or isinstance(bound[asked["column"]], list):
+            known = [key for key, value in bound.items() if isinstance(value, float)]
+            raise NotAllowed("outputs", name, **_near("column", asked["column"], known))
+        value = bound[asked["column"]]
+        found[name] = float("nan") if value is None else float(value)
+    return found
 
 
 def _near(what: str, given: str, known: Sequence[str]) -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import click
 
-from statejump import bodies
+from statejump import body as bodies
 from statejump.bodies.body import CondensedBody
 from statejump.bodies.figure import drawn
 from statejump.bodies.page import write as write_page

@@ -18,8 +18,8 @@ OPTIONS = {"output": "--output", "range": "--range"}
 
 @click.command("bounds")
 @CASE
-@click.option("--output", multiple=True, metavar="NODE", help="node:NAME or node:NAME.x; default: the nodes that may "
-              "differ most. May be given several times.")
+@click.option("--output", multiple=True, metavar="WHAT", help="node:NAME, node:NAME.x, node:NAME.xy, rms, tilt, "
+              "zernike:K or point; default: the nodes that may differ most. May be given several times.")
 @click.option("--range", "range_K", metavar="LOW:HIGH", help="ΔT [K] of every member, each by itself, for example "
               "-80:60; default: the programs of the case.")
 @click.option("--attain", is_flag=True, help="Write and simulate the history that attains each bound.")

@@ -20,6 +20,7 @@ from statejump.core.units import plain
 from statejump.kinds import require
 from statejump.kinds.protocol import ReducedModel
 from statejump.surface import Design, repeatability, summary
+from statejump.surface.runs import displacements_m
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -120,7 +121,7 @@ def _of_case(
     with undivided(console, f"{case.name}, reduced model") as on_progress:
         run = require(case, ReducedModel).reduced(case, on_progress)
     history = surface.history(run, measure)
-    moves = surface.displacements_m(run, design, nodes)
+    moves = displacements_m(run, design, nodes)
     worst = int(np.argmax(history["rms_design_m"]))
     return design, {
         f"farthest from the design, at {history['temperature_change_K'][worst]:.4g} K": moves[worst],

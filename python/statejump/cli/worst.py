@@ -18,7 +18,7 @@ from statejump.kinds import require
 @CASE
 @click.option("--range", "range_K", required=True, metavar="LOW:HIGH", help="ΔT [K] of every member, each by itself, "
               "for example -80:60.")
-@click.option("--output", multiple=True, metavar="NODE", help="node:NAME or node:NAME.x; default: the displacement "
+@click.option("--output", multiple=True, metavar="OUTPUT", help="As of bounds; default: the displacement "
               "that may differ most. May be given several times.")
 @click.option("--group", "groups", multiple=True, metavar="NAMES", help="Members with one common temperature, for "
               "example 'L1*,L20'. May be given several times.")
@@ -35,7 +35,7 @@ def worst_command(case_file: Path, range_K: str, output: tuple[str, ...], groups
     \b
     Examples:
       statejump worst cases/trusses/chain_10.toml --range -80:60
-      statejump worst cases/trusses/umbrella_8.toml --range -60:100 --output node:T1.z
+      statejump worst cases/trusses/umbrella_8.toml --range -60:100 --output tilt
     """
     console = make_console(quiet or as_json)
     case = loaded(case_file, WorstCases)

@@ -394,6 +394,8 @@ CODES: dict[str, Code] = {
     "output_misspelt": Code(cause="did you mean {meant}?"),
     "output_not_vector": Code(cause="{column} is no vector"),
     "output_without_item": Code(cause="there are no {items}"),
+    "output_without_bounds": Code(text="this kind of case has no bounds"),
+    "output_bound_not_chosen": Code(cause="of which output is the bound, as in 'bound:spread_m[node:C.y]'?"),
     "output_without_surface": Code(text="the run has no surface of which the output is"),
     "output_item_undefined": Code(cause="there is no such {what_it_is}; there are {known}"),
     "output_without_items": Code(cause="{column} has no items"),
@@ -626,6 +628,21 @@ CODES: dict[str, Code] = {
         cause="not yet: bounds of joints with clearance (class C)",
         remedy="simulate the histories that matter: 'statejump truss answers'",
     ),
+    "bounds_of_open_contact": Code(
+        what="{joint_with_clearance} carries no force without friction",
+        cause="the direction of its contact is open",
+        remedy="preload the joint",
+    ),
+    "bounds_of_amplified_friction": Code(
+        what="friction moments of the joints amplify themselves",
+        cause="no bound of the contact forces exists",
+        remedy="reduce friction or radii of the journals, or run 'statejump truss answers'",
+    ),
+    "bounds_of_open_stops": Code(
+        what="the positions and forces of stops, plays and cables have no confirmed range",
+        cause="the truss is nearly a mechanism without them",
+        remedy="stiffen it, or simulate the histories that matter: 'statejump truss answers'",
+    ),
     "bounds_of_stop": Code(
         what="{part} may {change} at the reference temperature",
         cause="not yet: bounds across stops, plays and slack cables (class B)",
@@ -644,12 +661,13 @@ CODES: dict[str, Code] = {
     "bounds_without_friction": Code(
         what="no joint has friction", cause="every history returns to the same state", remedy="no bound is needed",
     ),
-    "bounds_bad_output": Code(cause="must be node:NAME or node:NAME.x, .y, .z with a free direction"),
+    "bounds_bad_output": Code(cause="must be node:NAME, node:NAME.x or node:NAME.xy with a free direction, or, of a "
+                              "surface, rms, rms:design, rms:rigid, tilt, zernike:K or point:X,Y,Z"),
     "bounds_output_missing": Code(cause="the truss is too large to search for the nodes that may differ most",
                                   remedy="give node:NAME"),
     "bounds_body": Code(
-        what="{part}: bounds of condensed bodies are not available yet",
-        cause="their thermal patterns are no temperatures of members",
+        what="{part} has no bounds",
+        cause="its thermal patterns follow different programs, a bound varies one temperature for each item",
     ),
     "bounds_bad_range": Code(cause="must be LOWEST:HIGHEST with LOWEST <= 0 <= HIGHEST [K], for example -80:60"),
     "worst_part": Code(
@@ -744,6 +762,9 @@ CODES: dict[str, Code] = {
     "fe_other_parts": Code(
         cause="'statejump fe' takes trusses of links, sliders, Iwan joints and joints with clearance only",
     ),
+    "fe_other_parts_with_beams": Code(
+        cause="'statejump fe' takes beams together with links, sliders, hinges and rigid bodies only",
+    ),
     "fe_slider_branches": Code(cause="sliders of 'statejump fe' are followed over at most {most} branches"),
     "fe_slider_shape": Code(cause="sliders of 'statejump fe' follow 'triangle' and 'table'"),
     "fe_soft_sliders": Code(cause="the deck's sliders have rigid stops and no play"),
@@ -812,6 +833,13 @@ CODES: dict[str, Code] = {
     "hinge_apart": Code(cause="its nodes are {apart_m:g} m apart", remedy="put them at one position"),
     "hinge_sticking_missing": Code(cause="reduced.sticking = {sticking!r} needs it, the hinge has no stiffness"),
     "released_twice": Code(cause="both ends release the {released}", remedy="release it at one end"),
+    "mean_moment": Code(cause="node {node!r} has a moment, and nothing else carries its part about {direction!r}",
+                        remedy="let the reference follow in this direction too"),
+    "mean_node_repeated": Code(cause="must be different nodes other than the reference"),
+    "mean_undetermined": Code(
+        cause="the nodes are on one line or at one position, which does not determine {direction!r} of the reference",
+        remedy="name more nodes, or leave out this direction"),
+    "mean_weights": Code(cause="must be {nodes_of_mean}, one above 0 for each node of 'nodes'"),
     "rigid_node_fixed": Code(cause="supports hold it and the master, so the force of its arm is not unique",
                              remedy="leave it out"),
     "rigid_node_repeated": Code(cause="must be different nodes other than the master"),
@@ -836,7 +864,7 @@ CODES: dict[str, Code] = {
         remedy='set reduced.sticking to "elastic" or "rigid"',
     ),
     "node_without_rotation": Code(
-        cause="no beam, rigid body or hinge rotates the node; a beam end that releases all moments does not"),
+        cause="no beam, body, hinge or mean rotates the node; a beam end that releases all moments does not"),
     "planar_axis": Code(cause="in a planar truss it is z"),
     "planar_body": Code(cause="condensed bodies need 3"),
     "planar_axis_y": Code(cause="in a planar truss y of a section lies in the plane, to the left of its beam"),
@@ -1119,6 +1147,11 @@ CODES: dict[str, Code] = {
         remedy="give a file with EXTRN or ASET cards, or nodes with equally many dofs",
     ),
     "matrix_without_nodes": Code(what="the stiffness has no dofs of nodes"),
+    "condense_beam_node": Code(
+        what="node {node} belongs to a beam",
+        cause="the section of a beam has several nodes in CalculiX",
+        remedy="name nodes of solids or shells only",
+    ),
     "condense_dependent": Code(
         what="node {node} has no dofs of its own",
         cause="an equation, a tie or a joint of shells makes it depend on other nodes",
@@ -1127,7 +1160,7 @@ CODES: dict[str, Code] = {
     "condense_element": Code(
         what="line {line}: elements of type {kind}",
         cause="bodies are condensed of {known}",
-        remedy="keep beams outside of the body, as [[beam]]",
+        remedy="keep other elements outside of the body",
     ),
     "condense_initial": Code(
         what="*INITIAL CONDITIONS has several temperatures",

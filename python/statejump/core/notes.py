@@ -72,6 +72,11 @@ NOTES: dict[str, str] = {
     "free_spin": (
         "{named}: free to spin about its own axis, which moves no node and carries no moment; held by a soft spring"
     ),
+    "mean_rotates": (
+        "mean {mean!r} rotates by {angle_rad:.2g} rad; its equations are linear, the neglected displacement is up to "
+        "{error_m:.2g} m (angle squared over 2, times its size), {share:.2g} times the largest of its nodes; a "
+        "[[rigid]] is exact for large rotations, but stiffens its nodes"
+    ),
     "body_bends": (
         "body {body!r} bends by {angle_rad:.2g} rad against its frame; a linear body neglects the shortening of "
         "{strain:.2g} (angle squared over 24), {share:.2g} times its largest thermal strain: divide the body"

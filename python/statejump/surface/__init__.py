@@ -16,7 +16,7 @@ from __future__ import annotations
 from statejump.surface.design import DEFINITIONS, MEASURES, Design, Errors
 from statejump.surface.motion import pointing_rad, rotation_rad
 from statejump.surface.repeatability import Repeatability, repeatability
-from statejump.surface.runs import displacements_m, history, reflector_of
+from statejump.surface.runs import history, reflector_of
 from statejump.surface.zernike import noll, zernike
 
 __all__ = ["DEFINITIONS", "MEASURES", "Design", "Errors", "Repeatability", "history", "noll", "pointing_rad",

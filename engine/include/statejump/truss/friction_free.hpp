@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "statejump/start_friction.hpp"
 #include "statejump/truss/model.hpp"
 
 namespace statejump::truss {
@@ -11,13 +12,16 @@ namespace statejump::truss {
 /// A truss about its equilibrium without friction at ΔT = 0, with all friction joints free to
 /// slide:
 ///
-///   K q + Hᵀ μ = G T − Bᵀ λ,   H q = 0,   s = s0 + B q,   |λ| <= f
+///   K q + Hᵀ μ = r + G T − Bᵀ λ,   H q = 0,   s = s0 + B q,   |λ| <= f
 ///
 /// q: change of the dofs; T: ΔT of the elements; λ: friction against the slides s. K contains the
-/// stiffness of the elements under their forces, and that of hinges.
+/// stiffness of the elements under their forces, and that of hinges. r: loads that joints carry,
+/// which are friction at the start of a path, forces of stops, and forces of guides.
 struct FrictionFree {
   Eigen::SparseMatrix<double> stiffness;  ///< K, symmetric [N/m].
   Eigen::SparseMatrix<double> guides;     ///< H; rows may depend on others.
+  Eigen::VectorXi guide_joint;            ///< Joint of each row of H; −1: none.
+  Eigen::VectorXd load;                   ///< r [N].
   Eigen::SparseMatrix<double> slides;     ///< B [-], a row for every joint.
   Eigen::SparseMatrix<double> heating;    ///< G [N/K], a column for every element.
   Eigen::SparseMatrix<double> of_nodes;   ///< Displacements of nodes, see Linearised::of_nodes.
@@ -30,7 +34,9 @@ struct FrictionFree {
 };
 
 /// Joints appear in the order of the model, elements type by type.
-/// @throws Failure if the truss has no equilibrium without friction
-FrictionFree friction_free(const Model& model);
+/// @param from frictionless: about the equilibrium without friction; otherwise about the start of a
+///   path
+/// @throws Failure if the truss has no such equilibrium
+FrictionFree friction_free(const Model& model, StartFriction from = StartFriction::frictionless);
 
 }  // namespace statejump::truss

@@ -72,8 +72,9 @@ struct Constraint {
   std::vector<ConstraintTerm> terms;  ///< At least one.
 
   static constexpr const char* kind = "constraint";  ///< In messages.
-  /// Factors of a constraint below this fraction of its largest factor are rejected [-]. If factors
-  /// cancel in the elimination, their rounding is below a thousandth of this fraction.
+  /// Factors of a constraint below this fraction of its largest factor, of displacements or of
+  /// rotations, are rejected [-]. If factors cancel in the elimination, their rounding is below a
+  /// thousandth of this fraction.
   static constexpr double least_factor = 1e-9;
 };
 

@@ -26,6 +26,7 @@ REFUSED = {
     "RIGID BODY": "a rigid body does not expand; name its nodes with --interface NSET=expanding",
     "PART": "parts and instances are not read by CalculiX",
 }
+BEAMS = ("B31", "B31R", "B32", "B32R")
 SHELLS = ("S3", "S6", "S4", "S4R", "S8", "S8R")
 SOLIDS = {  # faces as corners of an element, from 0
     "C3D4": ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
@@ -41,7 +42,8 @@ EDGES = {
 CORNERS = {"C3D10": "C3D4", "C3D10T": "C3D4", "C3D20": "C3D8", "C3D20R": "C3D8", "C3D8R": "C3D8", "C3D8I": "C3D8",
            "C3D15": "C3D6"}
 COUNTS = {"C3D4": 4, "C3D6": 6, "C3D8": 8, "C3D8R": 8, "C3D8I": 8, "C3D10": 10, "C3D10T": 10, "C3D15": 15,
-          "C3D20": 20, "C3D20R": 20, "S3": 3, "S6": 6, "S4": 4, "S4R": 4, "S8": 8, "S8R": 8}
+          "C3D20": 20, "C3D20R": 20, "S3": 3, "S6": 6, "S4": 4, "S4R": 4, "S8": 8, "S8R": 8,
+          "B31": 2, "B31R": 2, "B32": 3, "B32R": 3}
 
 
 @attrs.frozen
@@ -69,6 +71,11 @@ class BodyDeck:
         """Whether the body has shells, whose nodes CalculiX expands."""
         return any(kind in SHELLS for kind, _ in self.elements)
 
+    @property
+    def beam_nodes(self) -> frozenset[int]:
+        """Nodes of beams, whose sections CalculiX expands."""
+        return frozenset(node for kind, nodes in self.elements if kind in BEAMS for node in nodes)
+
     def nodes_of(self, name: str) -> list[int]:
         """Return the nodes of a set. :raises StatejumpError: there is no such set"""
         found = self.sets.get(name.upper())
@@ -81,6 +88,8 @@ class BodyDeck:
         """Return the nodes of the faces on the surface: corners, then the middle nodes of edges."""
         seen: dict[tuple[int, ...], tuple[int, ...] | None] = {}
         for kind, nodes in self.elements:
+            if kind in BEAMS:
+                continue
             if kind in SHELLS:
                 seen[tuple(sorted(nodes))] = nodes
                 continue

@@ -29,6 +29,7 @@ Matrix = NDArray[np.float64]
 KINDS = ("mean", "expanding", "rigid", "node")
 SCALE = 1e6  # of the part of displacements that a second run prints
 MOST_ROWS_OF_MESH = 4_000_000  # numbers of the recovery rows of the surface; without rows, drawings move it rigidly
+INNER = 0.5  # radius of the support over that of the body
 ALL, DUMMIES = "STATEJUMPALL", "STATEJUMPDIGITS"
 
 
@@ -71,7 +72,10 @@ class _Mesh:
         sparse = libraries.sparse()
 
         places, columns, values = [], [], []
+        beams = self.deck.beam_nodes
         for place, node in enumerate(nodes):
+            if node in beams:
+                raise StatejumpError(code="condense_beam_node", file=self.deck.path, node=node)
             if node not in self.rows:
                 raise StatejumpError(code="condense_dependent", file=self.deck.path, node=node)
             for direction, levels in enumerate(self.rows[node]):
@@ -252,9 +256,17 @@ def _thermal_steps(deck: BodyDeck, patterns: Sequence[Pattern], used: Sequence[i
 
 
 def _support(mesh: _Mesh, used: Sequence[int]) -> list[tuple[int, int]]:
-    """Return six dofs of three distant nodes that hold the body without constraint."""
-    nodes = [node for node in used if node in mesh.rows]
+    """Return six dofs of three nodes that hold the body without constraint. The nodes surround the centre at half the
+    radius of the body: displacements and, with them, their rounding are then small."""
+    beams = mesh.deck.beam_nodes
+    nodes = [node for node in used if node in mesh.rows and node not in beams]
     places = np.array([mesh.deck.positions[node] for node in nodes])
+    far = np.linalg.norm(places - places.mean(axis=0), axis=1)
+    inner = far <= INNER * far.max()
+    near = places[inner]
+    if len(near) > 2 and np.linalg.svd(near - near.mean(axis=0), compute_uv=False)[1] > 1e-3 * far.max():
+        nodes = [node for node, kept in zip(nodes, inner) if kept]
+        places = near
     first = int(np.linalg.norm(places - places.mean(axis=0), axis=1).argmax())
     second = int(np.linalg.norm(places - places[first], axis=1).argmax())
     along = (places[second] - places[first]) / np.linalg.norm(places[second] - places[first])
@@ -345,7 +357,8 @@ class _Recovery:
     def surface(self) -> Mesh:
         """Return the surface, with rows if they are not too many."""
         faces = [corners_of(face) for face in self.mesh.deck.faces()]
-        nodes = sorted({node for face in faces for node in face if node in self.mesh.rows})
+        beams = self.mesh.deck.beam_nodes
+        nodes = sorted({node for face in faces for node in face if node in self.mesh.rows and node not in beams})
         places = {node: place for place, node in enumerate(nodes)}
         cells = np.array([[places[node] for node in (*face, face[-1])[:4]] for face in faces
                           if all(node in places for node in face)], dtype=np.int64).reshape(-1, 4)

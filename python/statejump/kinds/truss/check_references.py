@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -12,7 +12,8 @@ import numpy as np
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
-from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
+from statejump.kinds.truss.check_means import check_means
+from statejump.kinds.truss.constraints import LEAST_COEFFICIENT, TURNS
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.beam import BEAM
 from statejump.kinds.truss.elements.body import BODY, names_of_points
@@ -20,7 +21,7 @@ from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
-from statejump.kinds.truss.rotating import rotating_nodes
+from statejump.kinds.truss.rotating import rotated_by_parts, rotating_nodes
 from statejump.kinds.truss.sections import Link, TrussSections
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
 
@@ -46,7 +47,8 @@ def check_references(case: TrussSections) -> None:
     for kind in (*JOINTS, *ELEMENTS):
         for item in where_wrong(kind.listed(case), partial(kind.may_be_wrong_references, around=around)):
             kind.check_references(item, nodes, links, rotating)
-    check_constraints(case, nodes)
+    check_constraints(case, nodes, rotating)
+    check_means(case.mean, nodes, case.truss.dimension, rotated_by_parts(case))
     check_mechanism.check(case, links)
     if case.reflector is not None:
         if not case.reflector.nodes and not case.reflector.points:
@@ -150,7 +152,7 @@ def _alternatives(case: TrussSections) -> None:
             element.check_keys(item)
 
 
-def check_constraints(case: TrussSections, nodes: Mapping[str, Any]) -> None:
+def check_constraints(case: TrussSections, nodes: Mapping[str, Any], rotating: Collection[str]) -> None:
     """Raise NotAllowed for the first constraint with inconsistent terms."""
     for item in case.constraint:
         where = {"item": f"constraint {item.name!r}"}
@@ -161,14 +163,19 @@ def check_constraints(case: TrussSections, nodes: Mapping[str, Any]) -> None:
         for key in ("directions", "coefficients"):
             if len(getattr(item, key)) != len(item.nodes):
                 raise NotAllowed(key, getattr(item, key), code="constraint_length", terms=len(item.nodes), **where)
-        if case.truss.dimension == 2 and "z" in item.directions:
+        if case.truss.dimension == 2 and set(item.directions) & {"z", "Rx", "Ry"}:
             raise NotAllowed("directions", item.directions, code="planar_directions", **where)
         terms = list(zip(item.nodes, item.directions))
         for term in terms:
             if terms.count(term) > 1:
                 raise NotAllowed("nodes", item.nodes, code="constraint_term_twice", node=term[0], direction=term[1],
                                  **where)
-        largest = max(abs(value) for value in item.coefficients)
-        for value in item.coefficients:
-            if value == 0 or abs(value) < LEAST_COEFFICIENT * largest:
+        for name, direction in terms:
+            if direction in TURNS and name not in rotating:
+                raise NotAllowed("nodes", name, code="node_without_rotation", item=where["item"],
+                                 nodes=(name,))
+        for value, direction in zip(item.coefficients, item.directions):
+            beside = (abs(one) for one, of in zip(item.coefficients, item.directions)
+                      if (of in TURNS) == (direction in TURNS))
+            if value == 0 or abs(value) < LEAST_COEFFICIENT * max(beside):
                 raise NotAllowed("coefficients", value, code="constraint_coefficient", **where)

@@ -16,6 +16,7 @@ from statejump.core import expansion, thermal
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.arrays import said
 from statejump.kinds.truss.check_geometry import check_geometry
+from statejump.kinds.truss.check_means import check_clouds
 from statejump.kinds.truss.check_references import check_references
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
@@ -26,7 +27,7 @@ from statejump.kinds.truss.sections import Node, TrussSections
 from statejump.schema.item_tables import ItemColumns, each, repeated_names, where_wrong
 
 SECTIONS = ("node", "link", "program", "expansion", *(kind.section for kind in (*JOINTS, *ELEMENTS)), "constraint",
-            "drive")
+            "mean", "drive")
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
@@ -42,6 +43,7 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
     _vectors(case)
     check_references(case)
     check_geometry(resolve())
+    check_clouds(case.mean, resolve().means, case.truss.dimension)
     if case.motion.displacement_tolerance_m is not None and case.motion.theta != 0.5:
         raise NotAllowed("motion.theta", case.motion.theta, code="theta_without_equal_steps")
     if case.motion.scheme == "regularised":
@@ -49,7 +51,7 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
 
 
 def _rotations(case: TrussSections) -> None:
-    """Check the supports of rotations and the moments of nodes: only beams, rigid bodies and hinges rotate nodes."""
+    """Check the supports of rotations and the moments of nodes. Only beams, bodies, hinges and means rotate nodes."""
     dimension = case.truss.dimension
     rotating = rotating_nodes(case)
     # A support may prevent a rotation that no beam transmits; a moment there would have no effect.

@@ -141,6 +141,8 @@ def check(case: TrussCase) -> None:
     check_at_rest(truss)
     for index in np.flatnonzero(truss.bodies.own)[:1]:
         raise refuse(case, "dem_body", f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
+    for name in truss.means.names[:1]:
+        raise refuse(case, "dem_constraint", f"mean {name!r} constrains displacements, the DEM has no such item")
     for name in truss.constraints.names[:1]:
         raise refuse(case, "dem_constraint", f"constraint {name!r} constrains displacements, the DEM has no such item")
     mass = lumped_mass_kg(truss)

@@ -104,8 +104,10 @@ def _free(truss: ResolvedTruss, rates: _Rates, turning: np.ndarray) -> np.ndarra
     turns = np.hstack((np.zeros((3, 3)), np.eye(3)))
     rows = [moves[nodes.fixed], np.einsum("na,nak->nk", nodes.guide_normal, moves)]
     rows += [turns[fixed] for fixed in nodes.fixed_rotations[turning]]
-    rows += [np.einsum("ta,tak->k", of, moves[which])[None] / np.abs(of).max()
-             for which, of in zip(truss.constraints.nodes, truss.constraints.coefficients)]
+    for which, turned, of in zip(truss.constraints.nodes, truss.constraints.turns, truss.constraints.coefficients):
+        rate = np.where(turned[:, None, None], turns / rates.size, moves[which])
+        size = np.abs(of * np.where(turned, 1 / rates.size, 1.0)[:, None]).max()
+        rows.append(np.einsum("ta,tak->k", of, rate)[None] / size)
     free = null_space(np.vstack(rows), rcond=LEAST) if any(len(one) for one in rows) else np.eye(6)
     whole = np.vstack((moves.reshape(-1, 6), *(turns for _ in range(int(turning.any())))))
     _, sizes, motions = np.linalg.svd(whole @ free, full_matrices=False)

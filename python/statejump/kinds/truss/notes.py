@@ -27,8 +27,10 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> Note:
     if note["kind"] == "large_start":
         size_m = float(np.ptp(truss.nodes.position_m, axis=0).max())
         return Note("large_start", value=note["value"], share=note["value"] / size_m)
-    return Note(CODES[note["kind"]], named=_named(note["joints"]), at=at, value=note["value"],
-                joints=tuple(note["joints"]), temperature_change_K=note["temperature_change_K"], time_s=note["time_s"])
+    joints = [("mean", truss.means.of_constraint[name]) if name in truss.means.of_constraint else (kind, name)
+              for kind, name in note["joints"]]
+    return Note(CODES[note["kind"]], named=_named(joints), at=at, value=note["value"],
+                joints=tuple(joints), temperature_change_K=note["temperature_change_K"], time_s=note["time_s"])
 
 
 def _named(joints: Sequence[tuple[str, str]]) -> str:

@@ -17,9 +17,10 @@ from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.body import points_called
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.means import resolve_means
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
-from statejump.kinds.truss.rotating import rotating_nodes
+from statejump.kinds.truss.rotating import rotated_by_parts, rotating_nodes
 from statejump.kinds.truss.sections import TrussSections, TrussThermal
 from statejump.schema.item_tables import ItemColumns, ItemIndex, once
 
@@ -52,6 +53,7 @@ def resolve(case: TrussSections) -> ResolvedTruss:
             moments += element.weight_moments_N_m(elements[element.section], gravity, len(positions))
         nodes = replace(nodes, force_N=nodes.force_N + weights, moment_N_m=nodes.moment_N_m + moments)
 
+    means = resolve_means(case.mean, node_places, positions, dimension)
     reflector = None
     if case.reflector is not None:
         reflector = ReflectorSurface(
@@ -65,7 +67,8 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
         joints={joint.section: joint.resolve(joint.listed(case), known) for joint in JOINTS},
         elements=elements,
-        constraints=resolve_constraints(case.constraint, node_places), drives=resolve_drives(case.drive, known),
+        constraints=resolve_constraints(case.constraint, node_places) + means.constraints, means=means,
+        drives=resolve_drives(case.drive, known),
         programs=warmed.programs,
         program_names=warmed.program_names,
         reflector=reflector,
@@ -95,7 +98,7 @@ def _nodes(case: TrussSections, positions: np.ndarray) -> Nodes:
 def _rotations(case: TrussSections) -> dict[str, np.ndarray]:
     """Return supports of rotations and moments of the nodes."""
     count = len(case.node)
-    if not (case.beam or case.body or case.rigid or case.hinge):
+    if not (case.beam or case.body or case.rigid or case.hinge or case.mean):
         none = np.broadcast_to(0.0, (count, 3))
         return {"fixed_rotations": none != 0, "moment_N_m": none, "rotates": none[:, 0] != 0}
     clamped = np.stack([having(case.node, "fixed_rotations", axis) for axis in "xyz"], axis=1)
@@ -105,6 +108,11 @@ def _rotations(case: TrussSections) -> dict[str, np.ndarray]:
             moment[index, 3 - len(given):] = given
     if case.truss.dimension == 2:
         clamped[:, :2] = True
+    numbers = {name: number for number, name in enumerate(names(case.node))} if case.mean else {}
+    rotated = rotated_by_parts(case) if case.mean else set()
+    for mean in case.mean:  # nothing resists the other rotations of its reference
+        if mean.reference not in rotated and (turns := mean.turns(case.truss.dimension)):
+            clamped[numbers[mean.reference]] |= [axis not in turns for axis in "xyz"]
     rotates = np.isin(names(case.node), list(rotating_nodes(case)))
     return {"fixed_rotations": clamped, "moment_N_m": moment, "rotates": rotates}
 

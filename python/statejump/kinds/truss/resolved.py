@@ -16,6 +16,7 @@ import numpy as np
 from statejump.core.thermal import MemberProgram, Thermal, range_K
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.constraints import Constraints
+from statejump.kinds.truss.means import Means
 from statejump.kinds.truss.mechanism import Bodies, Drives
 
 # Ratio of Euler's load to that with pinned ends, by the supports of the link's ends; 4.493... solves tan x = x.
@@ -40,7 +41,7 @@ class Nodes:
     # Where beams end:
     fixed_rotations: np.ndarray  # (n, 3) bool: no rotation about x, y, z; planar trusses: x and y everywhere
     moment_N_m: np.ndarray  # (n, 3)
-    rotates: np.ndarray  # (n,) bool: beams, rigid bodies or hinges rotate it
+    rotates: np.ndarray  # (n,) bool: beams, rigid bodies, hinges or means rotate it
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,8 @@ class ResolvedTruss:
     bodies: Bodies  # shapes of the links
     joints: Mapping[str, Any]  # arrays of every joint type, by section
     elements: Mapping[str, Any]  # arrays of every element type except links, by section
-    constraints: Constraints
+    constraints: Constraints  # including those of the means
+    means: Means
     drives: Drives
     programs: tuple[Thermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", names of the file, names of members, "EXPANSION of PROGRAM"
@@ -155,11 +157,13 @@ class ResolvedTruss:
         return self.elements["spring"]
 
     def bending(self) -> tuple[str, str] | None:
-        """Return the section and the name of the first element or joint that rotates nodes; None if none does."""
+        """Return the section and the name of the first element, joint or mean that rotates nodes; None if none does."""
         parts = [(one, self.elements) for one in self.element_types] + [(one, self.joints) for one in self.types]
         for part, arrays in parts:
             for name in arrays[part.section].names if part.bends else ():
                 return part.section, name
+        for name in self.means.turning:
+            return "mean", name
         return None
 
     def with_elements(self, **changed: Any) -> ResolvedTruss:

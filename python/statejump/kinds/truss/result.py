@@ -16,7 +16,7 @@ from statejump.core.run import (
 )
 from statejump.core.start import carried
 from statejump.core.units import unit_of
-from statejump.kinds.truss import compare, notes
+from statejump.kinds.truss import compare, means, notes
 from statejump.kinds.truss.body_points import displacements_m, point_names, positions_m
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
@@ -175,7 +175,8 @@ def _run(
                {**_jumps(case, *(dense or (time, items["displacement_m"]))), **summary}, names(case), lambda: case,
                warnings=(*case.thermal_notes, *case.implausible, *plausibility.axial_strains(
                    truss.links.names, items["axial_force_N"], truss.links.axial_stiffness_N),
-                   *_of_elements(truss, items), *warnings), **more)
+                   *_of_elements(truss, items),
+                   *means.run_notes(truss.means, items["displacement_m"]), *warnings), **more)
 
 
 def _of_elements(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from statejump.kinds.truss.constraints import AXES, Constraint
 from statejump.kinds.truss.elements import ElementLists
 from statejump.kinds.truss.joints import JointLists
 from statejump.kinds.truss.joints.protocol import ALUMINIUM, USER
+from statejump.kinds.truss.means import Mean
 from statejump.kinds.truss.mechanism import Drive
 from statejump.kinds.truss.resolved import FIXITY, STICKING
 from statejump.schema.fields import (
@@ -226,6 +227,7 @@ class TrussSections(ElementLists, JointLists, TrussParts):
     KIND: ClassVar[str] = "truss"
 
     constraint: list[Constraint] = tables(Constraint, "sections [[constraint]]")
+    mean: list[Mean] = tables(Mean, "sections [[mean]]")
     drive: list[Drive] = tables(Drive, "sections [[drive]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     start: Start = section(Start)

@@ -148,7 +148,8 @@ def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
                         *(("fixed_rotations", "moment_N_m") if truss.bending() else ())),
         "elements": {table: _elements(truss, table) for table in _engine.truss_elements()},
         "joints": {joint.section: _joints(truss, joint) for joint in JOINTS},
-        "constraints": _table(truss.constraints, "nodes", "coefficients"),
+        "constraints": _table(truss.constraints, "coefficients",
+                              nodes=truss.constraints.sites(len(truss.nodes.names))),
         "programs": engine_programs(truss),
     }
 

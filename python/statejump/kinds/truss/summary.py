@@ -2,7 +2,8 @@
 """Texts of a ``truss`` case, and the output of commands about its runs."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -69,8 +70,10 @@ def _joints(case: TrussCase) -> list[str]:
 
 
 def _tied(case: TrussCase) -> list[str]:
-    found = [(items, noun) for element in ELEMENTS for items, noun in element.counted(element.listed(case))]
-    tied = [count(items, noun) for items, noun in (*found, (case.constraint, "constraint")) if items]
+    found: list[tuple[Sequence[Any], str]] = [
+        (items, noun) for element in ELEMENTS for items, noun in element.counted(element.listed(case))]
+    found += [(case.constraint, "constraint"), (case.mean, "mean")]
+    tied = [count(items, noun) for items, noun in found if items]
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
 
 

@@ -35,19 +35,22 @@ Way = Callable[[Sliding, Temperatures, np.ndarray, np.ndarray], np.ndarray | Non
 class Attained:
     """A history that leads to the highest and then to the lowest rest state of an output.
 
-    :param spread_m: difference of the two states, simulated
+    :param spread: difference of the two states, simulated, in the unit of the output
     :param largest_K: largest |ΔT| of a member
     """
 
     case: TrussCase
-    spread_m: float
+    spread: float
     largest_K: float
 
 
-def attained(case: TrussCase, of: Sliding, output: Output) -> Attained | None:
+def attained(case: TrussCase, of: Sliding, output: Output, direction: np.ndarray) -> Attained | None:
     """Return the simulated history that comes closest to the bound of an output; None: no temperatures of single
-    members up to MOST_K move the joints as needed."""
-    gain, _ = of.gains(output.row(of))
+    members up to MOST_K move the joints as needed.
+
+    :param direction: in which a vector output is largest
+    """
+    gain = of.gains_of(output.along(direction).rows(of))[0][0]
     members = Temperatures.of_box(of, (-1.0, 1.0))
     heating = of.slides @ of.solve(of.heating_N_per_K @ members.of_elements)
     spread = 2 * float(np.abs(gain) @ of.limit_N)
@@ -61,16 +64,15 @@ def attained(case: TrussCase, of: Sliding, output: Output) -> Attained | None:
             found.append(_simulated(_case_of(case, of, members, legs, output), output, float(np.abs(legs).max())))
         except StatejumpError:  # temperatures beyond the range of a case, or a truss that snaps on the way
             continue
-        if found[-1].spread_m >= (1 - NEARLY) * spread:
+        if found[-1].spread >= (1 - NEARLY) * spread:
             break
-    return max(found, key=lambda one: one.spread_m) if found else None
+    return max(found, key=lambda one: one.spread) if found else None
 
 
 def _simulated(case: TrussCase, output: Output, largest_K: float) -> Attained:
     path = solve(case)
     at = [int(np.abs(path.states["time_s"] - time).argmin()) for time in (case.period_s / 2, case.period_s)]
-    values = output.value(path.states["displacement_m"][at])
-    return Attained(case, float(values[0] - values[1]), largest_K)
+    return Attained(case, output.change(*path.states["displacement_m"][at]), largest_K)
 
 
 def all_slides(of: Sliding, members: Temperatures, heating: np.ndarray, gain: np.ndarray) -> np.ndarray | None:
@@ -153,28 +155,33 @@ def _case_of(case: TrussCase, of: Sliding, members: Temperatures, legs: np.ndarr
     programs = legs @ members.of_elements[which].T  # (legs, expanding elements), in units of the programs
     middle = (len(legs) - 1) // 2
     time = np.interp(np.arange(len(legs)), (0, middle, len(legs) - 1), (0.0, 0.5, 1.0)).tolist()
-    name = re.sub(r"[^A-Za-z0-9_-]", "_", f"{case.name}_attains_{output.name.partition(':')[2]}")
+    name = re.sub(r"[^A-Za-z0-9_-]", "_", f"{case.name}_attains_{output.name.removeprefix('node:')}")
     data["case"] = {**data["case"], "name": name, "title": f"History that attains the bound of {output.name}"}
     data["thermal"] = {"shape": "table", "table_time_s": time, "table_temperature_change_K": programs[:, 0].tolist(),
                        "cycles": 1}
     if np.ptp(programs, axis=1).max() > 1e-9 * max(np.abs(programs).max(), 1e-300):
         count = of.heating_N_per_K.shape[1]
         links = len(of.truss.links.names)
+        beams, bodies = len(data.get("beam", [])), len(data.get("body", []))
         place = {**{index: ("link", index) for index in range(links)},
-                 **{count - len(data.get("beam", [])) + index: ("beam", index)
-                    for index in range(len(data.get("beam", [])))}}
+                 **{count - bodies - beams + index: ("beam", index) for index in range(beams)},
+                 **{count - bodies + index: ("body", index) for index in range(bodies)}}
         data["program"] = []
         for column, element in enumerate(which):
             section, index = place[element]
             label = f"of_{data[section][index]['name']}"
-            data[section][index]["program"] = label
+            if section == "body":
+                patterns = of.truss.elements["body"].programs[index]
+                data[section][index]["programs"] = [label] * len(patterns)
+            else:
+                data[section][index]["program"] = label
             data["program"].append({"name": label, "shape": "table", "table_time_s": time,
                                     "table_temperature_change_K": programs[:, column].tolist()})
     else:
         data.pop("program", None)
-        for section in ("link", "beam"):
+        for section in ("link", "beam", "body"):
             for item in data.get(section, []):
-                item.pop("program", None)
+                item.pop("programs" if section == "body" else "program", None)
     made = load_case(data)
     assert isinstance(made, TrussCase)
     return made

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, vstack
 
 from statejump.kinds.truss.bounds.sliding import Sliding
+from statejump.kinds.truss.bounds.states import Placed
 from statejump.kinds.truss.joints import JOINTS
 
 MOST_ROWS = 4000  # of elements and directions, for which the dense compliance is computed
@@ -44,9 +45,15 @@ class Margin:
             return np.zeros(len(rows))
         return np.asarray(np.abs(rows @ self.by_defect) @ self.defect_N)
 
+    def of_vector(self, rows: np.ndarray) -> float:
+        """Return the norm that exact geometry adds to a vector output with rows (m, dofs)."""
+        if self.by_defect is None:
+            return 0.0
+        return float(np.linalg.norm(rows @ self.by_defect, axis=0) @ self.defect_N)
+
 
 @dataclass(frozen=True)
-class _Bars:
+class Bars:
     """Links and springs: rows (elements, dofs) of their elongation and of two directions across them."""
 
     along: Any
@@ -60,11 +67,12 @@ class _Bars:
         return len(self.length_m)
 
 
-def _bars(of: Sliding) -> _Bars:
+def bars_of(of: Placed, all_cables: bool = False) -> Bars:
+    """Return the links, springs and taut cables, or all cables."""
     truss, place = of.truss, of.truss.nodes.position_m + of.displacement_m
     links, springs = truss.links, truss.springs
-    taut = ~springs.cable | (np.linalg.norm(place[springs.nodes[:, 1]] - place[springs.nodes[:, 0]], axis=1)
-                             > springs.free_length_m)
+    length = np.linalg.norm(place[springs.nodes[:, 1]] - place[springs.nodes[:, 0]], axis=1)
+    taut = all_cables | ~springs.cable | (length > springs.free_length_m)
     nodes = np.concatenate((links.nodes, springs.nodes[taut])).astype(int)
     free = np.concatenate((links.stress_free_length_m, springs.free_length_m[taut]))
     stiffness = np.concatenate((links.axial_stiffness_N / links.stress_free_length_m,
@@ -75,11 +83,11 @@ def _bars(of: Sliding) -> _Bars:
     first = np.cross(along, np.eye(3)[np.abs(along).argmin(axis=1)] if truss.dimension == 3 else [0.0, 0.0, 1.0])
     first /= np.linalg.norm(first, axis=1)[:, None]
     across = [first] if truss.dimension == 2 else [first, np.cross(along, first)]
-    rows = [_relative(of, nodes, direction) for direction in (along, *across)]
-    return _Bars(rows[0], vstack(rows[1:]).tocsr(), stiffness, free, length)
+    rows = [relative(of, nodes, direction) for direction in (along, *across)]
+    return Bars(rows[0], vstack(rows[1:]).tocsr(), stiffness, free, length)
 
 
-def _relative(of: Sliding, pairs: np.ndarray, direction: np.ndarray) -> Any:
+def relative(of: Placed, pairs: np.ndarray, direction: np.ndarray) -> Any:
     """Return rows (pairs, dofs) of the motion of second nodes relative to first nodes along directions."""
     count, places = len(pairs), 3 * len(of.truss.nodes.names)
     numbers = np.repeat(np.arange(count), 3)
@@ -92,7 +100,7 @@ def _relative(of: Sliding, pairs: np.ndarray, direction: np.ndarray) -> Any:
 
 
 @dataclass(frozen=True)
-class _Arms:
+class Arms:
     """Arms of latches: links whose rotation is that of the latch."""
 
     rows: Any  # of the motion along the first direction of all, then along the second
@@ -103,7 +111,8 @@ class _Arms:
     stiffness_N_m: np.ndarray
 
 
-def _arms(of: Sliding) -> _Arms:
+def arms_of(of: Sliding, all_plays: bool = False) -> Arms:
+    """Return the arms of latches; their stiffnesses are those beyond the plays, or those of the equilibrium."""
     (section,) = (joint.section for joint in JOINTS if joint.turns and not joint.bends)
     latches = of.truss.joints[section]
     which = [index for index, joint in enumerate(of.joints) if joint.section == section]
@@ -116,25 +125,23 @@ def _arms(of: Sliding) -> _Arms:
     first = span - (span * axis).sum(axis=1, keepdims=True) * axis
     length = np.linalg.norm(first, axis=1)
     first /= length[:, None]
-    rows = vstack([_relative(of, pairs, first), _relative(of, pairs, np.cross(axis, first))]).tocsr()
+    rows = vstack([relative(of, pairs, first), relative(of, pairs, np.cross(axis, first))]).tocsr()
     rotation = (of.slide_m[which] / of.radius_m[which])[owner]
     edge, stiffness = latches.deadband_rad[owner], latches.stiffness_N_m_per_rad[owner]
     beyond = rotation - np.clip(rotation, -edge, edge)
     other = np.abs(latches.preload_moment_N_m[owner] + stiffness * beyond)
-    return _Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, np.where(beyond != 0, stiffness, 0.0))
+    springs = np.where(all_plays | (beyond != 0), stiffness, 0.0)
+    return Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, springs)
 
 
 def margin(of: Sliding) -> Margin:
     """Return the bounds of the defects of all rest states."""
     nothing = np.zeros(0)
-    for section in ("beam", "torsion_spring"):
-        if len(of.truss.elements[section].names):
-            return Margin("estimate", f"the margin of exact geometry is not derived for [[{section}]]", nothing)
-    for section in ("hinge", "rigid"):  # also, the reactions of their constraints add no geometric stiffness to K
-        if len(of.truss.joints[section].names):
-            return Margin("estimate", f"the margin of exact geometry is not derived for [[{section}]]", nothing)
-    bars = _bars(of)
-    arms = _arms(of)
+    why = refuses_margin(of)
+    if why:
+        return Margin("estimate", why, nothing)
+    bars = bars_of(of)
+    arms = arms_of(of)
     rows = vstack([bars.along, bars.across, arms.rows]).tocsr()
     rotates = vstack([bars.across, arms.rows])
     if not rotates.nnz or abs(rotates).max() < ZERO:
@@ -150,8 +157,8 @@ def margin(of: Sliding) -> Margin:
     compliance = np.abs(rows @ by_defect)
     elastic = rows[:bars.count] @ by_defect
     elastic[np.arange(bars.count), np.arange(bars.count)] -= 1 / bars.stiffness
-    found = _iterated(lambda defect: _defects(bars, arms, friction, compliance, np.abs(elastic), defect),
-                      len(friction))
+    found = iterated(lambda defect: defects(bars, arms, friction, compliance, np.abs(elastic), defect),
+                     len(friction))
     if found is None:
         return Margin("estimate", "the margin of exact geometry does not converge: the truss is nearly a mechanism",
                       nothing)
@@ -159,11 +166,21 @@ def margin(of: Sliding) -> Margin:
                   by_defect)
 
 
+def refuses_margin(of: Sliding) -> str:
+    """Return why no margin is derived; empty: it is."""
+    without = (of.truss.elements, ("beam", "body", "torsion_spring")), (of.truss.joints, ("hinge", "rigid"))
+    for parts, sections in without:
+        for section in sections:  # the reactions of joints add no geometric stiffness to K
+            if len(parts[section].names):
+                return f"the margin of exact geometry is not derived for [[{section}]]"
+    return ""
+
+
 def _exact() -> Margin:
     return Margin("exact", "no element rotates, so the truss is linear between its rest states", np.zeros(0))
 
 
-def _iterated(defects: Callable[[np.ndarray], np.ndarray | None], size: int) -> np.ndarray | None:
+def iterated(defects: Callable[[np.ndarray], np.ndarray | None], size: int) -> np.ndarray | None:
     """Return defects that bound themselves; None if there are none."""
     now: np.ndarray | None = np.zeros(size)
     for _ in range(ROUNDS):
@@ -177,8 +194,8 @@ def _iterated(defects: Callable[[np.ndarray], np.ndarray | None], size: int) -> 
     return None
 
 
-def _defects(bars: _Bars, arms: _Arms, friction: np.ndarray, compliance: np.ndarray, elastic: np.ndarray,
-             defect: np.ndarray) -> np.ndarray | None:
+def defects(bars: Bars, arms: Arms, friction: np.ndarray, compliance: np.ndarray, elastic: np.ndarray,
+            defect: np.ndarray) -> np.ndarray | None:
     """Return bounds of the defect forces of all rows within the ranges that friction and defects permit."""
     half, count, length = friction + compliance @ defect, bars.count, bars.length_m
     end = len(half) - 2 * len(arms.radius_m)
@@ -200,7 +217,7 @@ def _defects(bars: _Bars, arms: _Arms, friction: np.ndarray, compliance: np.ndar
                            np.tile(_at_arms(arms, delta), 2)))
 
 
-def _at_arms(arms: _Arms, delta_m: np.ndarray) -> np.ndarray:
+def _at_arms(arms: Arms, delta_m: np.ndarray) -> np.ndarray:
     """Return bounds of the defect forces [N] at arms whose ends move by at most ``delta_m`` relative to each other.
 
     The gradient of the angle of an arm v is J v/|v|². It changes by |δ|/(|v| |v + δ|), to first order exactly up to

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import inf, nan
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.start import FRICTIONLESS
+from statejump.kinds.truss.bounds.outputs import Linear
 from statejump.kinds.truss.bounds.programs import Polytope
 from statejump.kinds.truss.bounds.sliding import Sliding
 from statejump.kinds.truss.joints import JOINTS
@@ -24,6 +25,15 @@ WIDER = 1.02  # growth of ranges that do not yet reproduce themselves
 MOST_NARROWED, NARROWED = 5, 1e-3  # rounds that narrow ranges, and the smallest gain of a round
 NEAR = 1e-7  # smallest half range over the slide that friction of the joint itself permits
 SINGULAR = 1e-12
+WAYS = 16  # directions of a half-circle in which the width of an output with two components is bounded
+
+
+class Heated(Linear, Protocol):
+    """A truss with loads by temperature."""
+
+    @property
+    def heating_N_per_K(self) -> Any:
+        """G (dofs, elements)."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +49,7 @@ class Temperatures:
     highest_K: np.ndarray
 
     @staticmethod
-    def of_programs(of: Sliding) -> Temperatures:
+    def of_programs(of: Heated) -> Temperatures:
         """Return the programs of the case, each within its own range."""
         ranges = of.truss.temperature_ranges_K
         numbers, _ = _programs(of)
@@ -49,7 +59,7 @@ class Temperatures:
         return Temperatures(f"programs of the case, {low.min():g} to {high.max():g} K", made, low, high)
 
     @staticmethod
-    def of_box(of: Sliding, box: tuple[float, float]) -> Temperatures:
+    def of_box(of: Heated, box: tuple[float, float]) -> Temperatures:
         """Return all elements that expand, each by itself within a range."""
         numbers, fractions = _programs(of)
         which = np.flatnonzero((np.diff(of.heating_N_per_K.indptr) > 0) & (fractions != 0))
@@ -63,20 +73,26 @@ class Temperatures:
         return replace(self, lowest_K=factor * self.lowest_K, highest_K=factor * self.highest_K)
 
     def peak(self, gain: np.ndarray) -> tuple[float, float]:
-        """Return the lowest and the highest value of gain · ΔT of the elements."""
-        by_variable = gain @ self.of_elements
+        """Return the lowest and the highest value of gain (1, elements) · ΔT; of a vector, 0 and its norm."""
+        if len(gain) > 1:
+            most = np.maximum(np.abs(self.lowest_K), np.abs(self.highest_K))
+            return 0.0, float(np.linalg.norm(gain @ self.of_elements, axis=0) @ most)
+        by_variable = gain[0] @ self.of_elements
         ends = np.sort(np.array([by_variable * self.lowest_K, by_variable * self.highest_K]), axis=0)
         return float(ends[0].sum()), float(ends[1].sum())
 
 
-def _programs(of: Sliding) -> tuple[np.ndarray, np.ndarray]:
+def _programs(of: Heated) -> tuple[np.ndarray, np.ndarray]:
     """Return the program (-1: none) and the fraction of its ΔT of every element."""
     truss, count = of.truss, of.heating_N_per_K.shape[1]
-    for name in truss.elements["body"].names:
-        raise StatejumpError(code="bounds_body", part=f"body {name!r}")
     numbers, fractions = np.full(count, -1), np.ones(count)
-    beams = truss.elements["beam"]
-    for start, part in ((0, truss.links), (count - len(beams.names), beams)):
+    beams, bodies = truss.elements["beam"], truss.elements["body"]
+    of_bodies = count - len(bodies.names)
+    for index, (name, programs) in enumerate(zip(bodies.names, bodies.programs)):
+        if len(set(programs.tolist())) > 1:
+            raise StatejumpError(code="bounds_body", part=f"body {name!r}")
+        numbers[of_bodies + index] = programs[0] if len(programs) else -1
+    for start, part in ((0, truss.links), (of_bodies - len(beams.names), beams)):
         rows = slice(start, start + len(part.names))
         numbers[rows], fractions[rows] = part.program, part.temperature_fraction
     return numbers, fractions
@@ -100,10 +116,12 @@ def parsed_range(given: str | tuple[float, float]) -> tuple[float, float]:
 class Verdict:
     """Whether joints slip within a temperature range.
 
-    :param kind: "never_slips", "settles", "repeats" or "unknown"
+    :param kind: "never_slips", "settles", "repeats", "may_ratchet" or "unknown"
     :param factor: η, the factor on the range up to which joints settle
     :param limiting: joint that limits η
     :param slips: of every joint, whether it may slip; None: unknown
+    :param mechanism: motion that may ratchet
+    :param drift_m: its drift per cycle of the case, simulated; NaN: not simulated
     """
 
     kind: str
@@ -111,11 +129,14 @@ class Verdict:
     factor: float = nan
     limiting: str = ""
     slips: np.ndarray | None = None
+    mechanism: str = ""
+    drift_m: float = nan
 
     def record(self) -> dict[str, Any]:
         """Return the verdict as plain values."""
         return {"kind": self.kind, "text": self.text, "limiting_joint": self.limiting,
-                "factor": self.factor if np.isfinite(self.factor) else None,
+                "factor": self.factor if np.isfinite(self.factor) else None, "mechanism": self.mechanism,
+                "drift_m": None if np.isnan(self.drift_m) else self.drift_m,
                 "slips": None if self.slips is None else [bool(one) for one in self.slips]}
 
 
@@ -132,16 +153,43 @@ class WithinRange:
     rest: Polytope | None = None  # λ/f of joints with friction
     rubbing: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
-    def spread(self, gain: np.ndarray) -> tuple[float, float]:
-        """Return the spread [m] of the output −gain · λ within the range, and the largest jump from the start."""
+    def extent(self, gains: np.ndarray, most: float) -> tuple[float, float]:
+        """Return the spread of the output −gains λ within the range, and the largest jump from the start.
+
+        :param gains: (m, joints)
+        :param most: spread after any history
+        """
         if self.rest is None or self.start_N is None:
             return nan, nan
-        cost = -(gain * self.of.limit_N)[self.rubbing]
-        start = -float(gain @ self.start_N)
         if self.verdict.kind == "never_slips":
             return 0.0, 0.0
+        directions, factor = ways(gains * self.of.limit_N)
+        found = np.array([self._width(way @ gains) for way in directions])
+        if factor:
+            spread, jump = factor * found.max(axis=0)
+        else:
+            spread, jump = np.linalg.norm(found, axis=0)
+        return min(float(spread), most), min(float(jump), most)
+
+    def _width(self, gain: np.ndarray) -> tuple[float, float]:
+        assert self.rest is not None and self.start_N is not None
+        cost = -(gain * self.of.limit_N)[self.rubbing]
+        start = -float(gain @ self.start_N)
         high, low = self.rest.highest_value(cost), -self.rest.highest_value(-cost)
         return high - low, max(high - start, start - low)
+
+
+def ways(columns: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return directions (k, m) whose widths bound the diameter of a set in the span of columns (m, n).
+
+    The second result is the factor on the largest width; 0: the widths are those of a box.
+    """
+    left, size, _ = np.linalg.svd(columns, full_matrices=False)
+    rank = max(1, int((size > SINGULAR * size.max(initial=0.0)).sum()))
+    if rank != 2:
+        return left[:, :rank].T, 1.0 if rank == 1 else 0.0
+    angle = np.pi * np.arange(WAYS) / WAYS
+    return np.stack((np.cos(angle), np.sin(angle)), axis=1) @ left[:, :2].T, 1 / np.cos(0.5 * np.pi / WAYS)
 
 
 def within(of: Sliding, temperatures: Temperatures) -> WithinRange:
@@ -151,6 +199,8 @@ def within(of: Sliding, temperatures: Temperatures) -> WithinRange:
     in_part = {joint.section for joint in JOINTS if joint.slips_in_part}
     smooth = [str(of.joints[index]) for index in rubbing
               if of.joints[index].section in in_part or of.truss.sticking == "partial_slip"]
+    if np.any(of.truss.sliders.play_m > 0):
+        return WithinRange(of, Verdict("unknown", "no verdict is derived for plays of sliders"))
     if len(rubbing) > MOST_JOINTS:
         return WithinRange(of, Verdict("unknown", f"not computed for more than {MOST_JOINTS} joints with friction"))
     flexible = of.compliance[np.ix_(rubbing, rubbing)] + np.diag(1 / of.sticking_N_per_m[rubbing])

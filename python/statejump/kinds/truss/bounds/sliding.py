@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.sparse import bmat, csc_matrix, identity
-from scipy.sparse.linalg import splu
+from scipy.sparse import bmat, csc_matrix, identity, vstack
+from scipy.sparse.linalg import lsqr, splu
 
 from statejump import _engine
 from statejump.core.engine_failures import EngineFailed
@@ -76,6 +76,7 @@ class Sliding:
     :param full_slip_m: slide from zero friction to f without earlier slip
     :param radius_m: slide of a rotation by 1 rad
     :param displacement_m: displacements (nodes, 3) from the reference configuration
+    :param load_N: r, carried by stops and guides
     """
 
     truss: ResolvedTruss
@@ -90,7 +91,14 @@ class Sliding:
     full_slip_m: np.ndarray
     radius_m: np.ndarray
     displacement_m: np.ndarray
+    load_N: np.ndarray
+    guides: Any
     solve: Factors
+
+    def carried_N(self, which: Sequence[int]) -> np.ndarray:
+        """Return the forces of the closed stops of joints at the equilibrium, against the slides."""
+        rows = vstack([self.slides[list(which)], self.guides])
+        return np.asarray(lsqr(rows.T, self.load_N, atol=1e-14, btol=1e-14)[0][:len(which)])
 
     @cached_property
     def by_friction(self) -> np.ndarray:
@@ -103,16 +111,16 @@ class Sliding:
         found = self.slides @ self.by_friction
         return np.asarray(0.5 * (found + found.T))
 
-    def gains(self, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return B K⁻¹c (joints,) [m/N] and G ᵀK⁻¹c (elements,) [m/K] of an output c·q [m].
+    def gains_of(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return E K⁻¹Bᵀ (m, joints) [m/N] and E K⁻¹G (m, elements) [m/K] of an output E q, with rows (m, dofs).
 
         Gains by temperature that are rounding of the solution are 0.
         """
-        adjoint = self.solve(row)
-        thermal = np.asarray(self.heating_N_per_K.T @ adjoint)
-        largest = np.asarray(abs(self.heating_N_per_K).sum(axis=0)).ravel() * np.abs(adjoint).max(initial=0.0)
-        thermal[np.abs(thermal) < ROUNDED * largest] = 0.0
-        return np.asarray(self.slides @ adjoint), thermal
+        adjoint = self.solve(rows.T)
+        thermal = np.asarray((self.heating_N_per_K.T @ adjoint).T)
+        largest = np.asarray(abs(self.heating_N_per_K).sum(axis=0)).ravel()
+        thermal[np.abs(thermal) < ROUNDED * np.outer(np.abs(adjoint).max(axis=0, initial=0.0), largest)] = 0.0
+        return np.asarray((self.slides @ adjoint).T), thermal
 
 
 def sliding(case: TrussCase) -> Sliding:
@@ -134,21 +142,38 @@ def sliding(case: TrussCase) -> Sliding:
         if np.isnan(limits[index]):
             raise StatejumpError(code="bounds_of_clearance", place=truss.name, case=truss.name,
                                  joint_with_clearance=str(named[index]))
-    for slider in np.flatnonzero(truss.sliders.play_m > 0)[:1]:
-        raise StatejumpError(code="bounds_of_stop", place=truss.name, case=truss.name, change="open its play",
-                             part=f"slider '{truss.sliders.names[slider]}'")
-    stiffness, guides = found["stiffness_N_per_m"].tocsc(), found["guides"]
-    _refuse_mechanism(truss, stiffness, guides, found["of_nodes"].tocsr())
-    if not Factors(stiffness, guides, SOFTER, diag_pivot_thresh=0.0).stable:
-        raise StatejumpError(code="bounds_of_unstable", place=truss.name, case=truss.name)
+    stiffness, guides = _stiffness(truss, named, found), found["guides"]
+    check_stable(truss, stiffness, guides, found["of_nodes"].tocsr())
     of_joints = {key: found[name][friction] for key, name in (
         ("limit_N", "friction_limit_N"), ("slide_m", "slide_m"), ("full_slip_m", "full_slip_m"),
         ("sticking_N_per_m", "sticking_stiffness_N_per_m"), ("radius_m", "radius_m"))}
     return Sliding(
         truss=truss, joints=[named[index] for index in friction], stiffness=stiffness,
         slides=found["slides"].tocsr()[friction], heating_N_per_K=found["heating_N_per_K"].tocsc(),
-        of_nodes=found["of_nodes"].tocsr(), displacement_m=found["displacement_m"],
+        of_nodes=found["of_nodes"].tocsr(), displacement_m=found["displacement_m"], load_N=found["load_N"],
+        guides=guides,
         solve=Factors(stiffness, guides), **of_joints)
+
+
+def _stiffness(truss: ResolvedTruss, named: Sequence[Joint], found: dict[str, Any]) -> Any:
+    """Return K without the plays of sliders, which the engine models by a negative stiffness about their middles.
+
+    This also takes the forces of these springs off the friction limits in ``found``.
+    """
+    stiffness = found["stiffness_N_per_m"].tocsc()
+    which = [index for index, joint in enumerate(named) if joint.section == "slider"]
+    for number in np.flatnonzero(truss.sliders.play_m > 0):
+        row = found["slides"].tocsr()[which[number]]
+        stiffness = stiffness + found["sticking_stiffness_N_per_m"][which[number]] * (row.T @ row)
+        found["friction_limit_N"][which[number]] = truss.sliders.friction_limit_N[number]
+    return stiffness.tocsc()
+
+
+def check_stable(truss: ResolvedTruss, stiffness: Any, guides: Any, of_nodes: Any) -> None:
+    """Raise StatejumpError if a truss has a mechanism, or a negative stiffness, where guides permit motion."""
+    _refuse_mechanism(truss, stiffness, guides, of_nodes)
+    if not Factors(stiffness, guides, SOFTER, diag_pivot_thresh=0.0).stable:
+        raise StatejumpError(code="bounds_of_unstable", place=truss.name, case=truss.name)
 
 
 def _refuse_mechanism(truss: ResolvedTruss, stiffness: Any, guides: Any, of_nodes: Any) -> None:
@@ -164,9 +189,14 @@ def _refuse_mechanism(truss: ResolvedTruss, stiffness: Any, guides: Any, of_node
         shape /= np.linalg.norm(shape)
     if abs(shape @ (stiffness @ shape)) > FREE * stiffest:
         return
+    nodes, mode = moved_nodes(truss, of_nodes, shape)
+    raise StatejumpError(code="bounds_of_mechanism", place=truss.name, case=truss.name, nodes=nodes, mode=mode)
+
+
+def moved_nodes(truss: ResolvedTruss, of_nodes: Any, shape: np.ndarray) -> tuple[list[str], str]:
+    """Return the names of the nodes that a motion moves most, and the motion as text."""
     moved = (of_nodes @ shape)[:3 * len(truss.nodes.names)].reshape(-1, 3)
     most = np.argsort(-np.linalg.norm(moved, axis=1), kind="stable")[:3]
     nodes = [truss.nodes.names[node] for node in most if np.linalg.norm(moved[node]) > 0.1 * np.abs(moved).max()]
-    raise StatejumpError(code="bounds_of_mechanism", place=truss.name, case=truss.name, nodes=nodes,
-                         mode=", ".join(f"{truss.nodes.names[node]} ({AXES[int(np.abs(moved[node]).argmax())]})"
-                                        for node in most if truss.nodes.names[node] in nodes))
+    return nodes, ", ".join(f"{truss.nodes.names[node]} ({AXES[int(np.abs(moved[node]).argmax())]})"
+                            for node in most if truss.nodes.names[node] in nodes)

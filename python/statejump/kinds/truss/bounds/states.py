@@ -3,15 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Protocol
 
 import numpy as np
 
 from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.bounds.outputs import Linear
 from statejump.kinds.truss.bounds.sliding import Sliding
 from statejump.kinds.truss.joints import JOINTS
 
 # Half ranges of linear functions of the dofs (rows, dofs), including the margin of exact geometry.
 Ranges = Callable[[np.ndarray], np.ndarray]
+
+
+class Placed(Linear, Protocol):
+    """A truss at an equilibrium."""
+
+    @property
+    def displacement_m(self) -> np.ndarray:
+        """Displacements (nodes, 3) from the reference configuration."""
+
+
+def changing(of: Sliding, ranges: Ranges) -> StatejumpError | None:
+    """Return the refusal of a stop, play or cable that may change its state; None: all keep it."""
+    try:
+        kept_states(of, ranges)
+    except StatejumpError as refused:
+        return refused
+    return None
 
 
 def kept_states(of: Sliding, ranges: Ranges) -> list[str]:
@@ -20,10 +39,10 @@ def kept_states(of: Sliding, ranges: Ranges) -> list[str]:
     :param ranges: half ranges of linear functions of the dofs in all rest states
     :raises StatejumpError: one may change its state
     """
-    return [*_sliders(of, ranges), *_hinges(of, ranges), *_cables(of, ranges)]
+    return [*_sliders(of, ranges), *_hinges(of, ranges), *kept_cables(of, ranges)]
 
 
-def _refuse(of: Sliding, part: str, change: str) -> StatejumpError:
+def _refuse(of: Placed, part: str, change: str) -> StatejumpError:
     return StatejumpError(code="bounds_of_stop", place=of.truss.name, case=of.truss.name, part=part, change=change)
 
 
@@ -61,7 +80,11 @@ def _hinges(of: Sliding, ranges: Ranges) -> Iterator[str]:
             yield f"plays of {section.replace('_', ' ')}s keep their state in all rest states"
 
 
-def _cables(of: Sliding, ranges: Ranges) -> Iterator[str]:
+def kept_cables(of: Placed, ranges: Ranges) -> Iterator[str]:
+    """Yield one sentence for cables that stay slack, and one for those that stay taut.
+
+    :raises StatejumpError: one may change its state
+    """
     springs = of.truss.springs
     cables = np.flatnonzero(springs.cable)
     if not len(cables):
@@ -83,7 +106,7 @@ def _cables(of: Sliding, ranges: Ranges) -> Iterator[str]:
         yield f"{int(taut.sum())} cable(s) stay taut in all rest states"
 
 
-def _elongation(of: Sliding, pair: np.ndarray, along: np.ndarray) -> np.ndarray:
+def _elongation(of: Placed, pair: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Return the row of the distance of two nodes along a unit vector."""
     first, second = (of.of_nodes[3 * node:3 * node + 3].T @ along for node in pair)
     return np.asarray(second - first)

@@ -22,7 +22,8 @@ class LooseArms:
     def __init__(self, deck: Deck, near: Callable[[str, str], bool]) -> None:
         self.deck, self.near = deck, near
         self.rotating, self.ends = deck.bent(), carriers(deck)
-        self.ends |= {node for one in deck.equations for node, _, _ in one.terms}
+        self.ends |= {node for one in deck.equations for node in one.nodes()}
+        self.ends |= {node for one in deck.followers for node in one.nodes()}
         self.ends |= {body.nodes[0] for body in deck.rigid}
         self.master = {arm.node: arm.master for arm in deck.arms}
 

@@ -5,7 +5,7 @@ A rigid body at which bars and springs end at only one position becomes one node
 the body's other nodes. Other rigid bodies become rigid arms, see ``arms.py``. An equation that
 holds a node becomes a support. If equations make all displacements of two nodes at one position equal, they become one
 node. If an equation determines the motion of a node without bars, the loads of that node move to the other nodes. All
-other equations become constraints of the case.
+other equations become constraints of the case. Nodes that follow others become means, see ``followers.py``.
 """
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from statejump.kinds.truss.importing.arms import LooseArms
+from statejump.kinds.truss.importing.followers import drop_idle, hold_references, take_followers
 from statejump.kinds.truss.importing.model import Arm, Deck, Equation, Moment, RigidBody, carriers
-from statejump.kinds.truss.importing.supports import ALONG, SAME, basis_of, held_directions, is_held
+from statejump.kinds.truss.importing.supports import (
+    ALONG, SAME, basis_of, held_directions, is_held, is_rotation_held,
+)
 
 # Nodes nearer than this fraction of the truss size coincide, because decks have eight digits.
 ONE_PLACE = 1e-9
@@ -24,6 +27,7 @@ ONE_PLACE = 1e-9
 
 def settle_bodies(deck: Deck) -> None:
     """Process moments, rigid bodies and equations, after supports, loads, bars and springs are read."""
+    drop_idle(deck)
     turning = Turning(deck)
     bodies = _Bodies(deck, turning)
     for moment in deck.moments:
@@ -31,15 +35,16 @@ def settle_bodies(deck: Deck) -> None:
     if not (deck.rigid or deck.followers or deck.equations):
         return
     bodies.take()
-    _take_followers(deck)
+    take_followers(deck)
     _follow_joined(deck, bodies.one)
     _take_equations(deck, bodies.near)
     _hold_loose(deck)
+    hold_references(deck)
 
 
 def named_nodes(deck: Deck) -> set[str]:
     """Return the nodes that bars, springs or equations name."""
-    return carriers(deck) | {node for equation in deck.equations for node, _, _ in equation.terms}
+    return carriers(deck) | {node for equation in deck.equations for node in equation.nodes()}
 
 
 class _Bodies:
@@ -56,8 +61,8 @@ class _Bodies:
         self.bodies = self._united([body for body in deck.rigid if not any(body is one for one in self.partial)])
         self.followers = {node for body in self.partial for node in body.nodes[1:]}
         self.tied = self.followers | {body.nodes[0] for body in self.partial}
-        equations = [*deck.equations, *(one for follower in deck.followers for one in follower.equations)]
-        self.tied |= {node for one in equations for node, _, _ in one.terms}
+        self.tied |= {node for one in deck.equations for node in one.nodes()}
+        self.tied |= {node for one in deck.followers for node in one.nodes()}
         self.ends = carriers(deck)
         self.turned = [body for body in self.bodies if self._turns(body)]
         for body in self.turned:
@@ -193,6 +198,14 @@ def join(deck: Deck, one: Mapping[str, str]) -> None:
         arm.master, arm.node = one.get(arm.master, arm.master), one.get(arm.node, arm.node)
     for hinge in deck.hinges:
         hinge.nodes = (one.get(hinge.nodes[0], hinge.nodes[0]), one.get(hinge.nodes[1], hinge.nodes[1]))
+    for follower in deck.followers:
+        follower.follow(one)
+    for mean in deck.means:
+        mean.node = one.get(mean.node, mean.node)
+        weights: dict[str, float] = {}
+        for node, weight in mean.weights.items():
+            weights[one.get(node, node)] = weights.get(one.get(node, node), 0.0) + weight
+        mean.weights = weights
     for gone, kept in one.items():
         deck.fix(kept, "".join(deck.fixed.pop(gone, ())))
         for direction in deck.held.pop(gone, ()):
@@ -226,27 +239,12 @@ def _clamped(deck: Deck, node: str) -> bool:
     return all(is_held(deck, node, axis) for axis in np.eye(3)) and len(basis_of(held)) == 3
 
 
-def _take_followers(deck: Deck) -> None:
-    """Convert nodes whose motion is a mean of other nodes to equations; omit those on which nothing acts."""
-    used = named_nodes(deck)
-    turned = {moment.node for moment in deck.moments}
-    for one in deck.followers:
-        node = one.node
-        if not (node in used | turned or any(deck.force.get(node, ())) or deck.mass.get(node) or
-                len(held_directions(deck, node))):
-            deck.leave(one.card, "nothing acts on its node, which follows the others", one.line)
-        elif node in turned or not one.equations:
-            deck.refuse(one.card, "load_distribution", one.line)
-        else:
-            deck.equations += one.equations
-
-
 def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
     """Rewrite equations after nodes were merged. Refuse an equation with a node that a rigid arm replaced."""
     kept = []
     for one in deck.equations:
         one.follow(joined)
-        if all(node in deck.nodes for node, _, _ in one.terms):
+        if all(node in deck.nodes for node in one.nodes()):
             kept.append(one)
         else:
             deck.refuse(one.card, "node_on_rigid_arm", one.line, one.card.lstrip("*"))
@@ -255,8 +253,10 @@ def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
 
 def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
     """Process equations until none can be processed any more; the remaining equations become constraints."""
-    waiting = [replace(one, terms=[term for term in one.terms if not is_held(deck, *term[:2])])
-               for one in deck.equations]
+    bent = deck.bent()
+    waiting = [replace(one, terms=[term for term in one.terms if not is_held(deck, *term[:2])],
+                       turns=[term for term in one.turns if not is_rotation_held(deck, *term[:2])])
+               for one in deck.equations if _rotates(deck, one, bent)]
     taken: list[Equation] | None = waiting
     while waiting and taken:
         taken = _held_by(deck, waiting) or _made_one(deck, waiting, near) or _followed(deck, waiting)
@@ -267,6 +267,17 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
     for one in waiting:
         deck.take(one.card, "constraint")
     deck.equations[:] = waiting
+
+
+def _rotates(deck: Deck, one: Equation, bent: set[str]) -> bool:
+    """Return whether something rotates the nodes of all rotations of an equation. Otherwise the equation is left out,
+    if it contains nothing else, or refused."""
+    loose = [node for node, _, _ in one.turns if node not in bent]
+    if loose and len(loose) == len(one.nodes()):
+        deck.leave(one.card, "an equation of rotations: ends of bars turn freely", one.line)
+    elif loose:
+        deck.refuse(one.card, "rotation", one.line, one.card.lstrip("*"))
+    return not loose
 
 
 def _hold_loose(deck: Deck) -> None:
@@ -288,8 +299,11 @@ def _hold_loose(deck: Deck) -> None:
 
 def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
     """Convert equations that contain only one node to supports of this node, and drop equations without nodes."""
-    found = [one for one in equations if len({term[0] for term in one.terms}) < 2]
+    found = [one for one in equations if len(set(one.nodes())) < 2 and not (one.terms and one.turns)]
     for one in found:
+        if one.turns:
+            axis = sum((direction * factor for _, direction, factor in one.turns), start=np.zeros(3))
+            deck.hold_rotation(one.turns[0][0], axis / np.linalg.norm(axis))
         normal = sum((direction * factor for _, direction, factor in one.terms), start=np.zeros(3))
         if np.any(normal):
             deck.hold(one.terms[0][0], [float(part) for part in normal / np.linalg.norm(normal)])
@@ -298,7 +312,7 @@ def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
 
 def _equal(one: Equation) -> tuple[str, str] | None:
     """Return the two nodes of an equation that makes their displacements in one direction equal."""
-    if len(one.terms) != 2:
+    if len(one.terms) != 2 or one.turns:
         return None
     (first, along, factor), (second, other, opposite) = one.terms
     if first == second or np.linalg.norm(along * factor + other * opposite) > SAME * abs(factor):
@@ -340,14 +354,14 @@ def _followed(deck: Deck, equations: list[Equation]) -> list[Equation]:
     ends = carriers(deck)
     of_node: dict[str, list[Equation]] = {}
     for one in equations:
-        for node in dict.fromkeys(term[0] for term in one.terms):
+        for node in dict.fromkeys(one.nodes()):
             of_node.setdefault(node, []).append(one)
     found: list[Equation] = []
     used: set[int] = set()
     for node, several in of_node.items():
         own = [[term for term in one.terms if term[0] == node] for one in several]
         if node in ends or len(held_directions(deck, node)) or deck.mass.get(node) or \
-                any(len(terms) != 1 for terms in own) or any(id(one) in used for one in several):
+                any(len(terms) != 1 for terms in own) or any(one.turns or id(one) in used for one in several):
             continue
         rows = np.array([terms[0][1] for terms in own])
         force = np.array(deck.force.get(node, [0.0] * 3))

@@ -131,31 +131,68 @@ class Moment:
 
 @dataclass(eq=False)
 class Equation:
-    """A sum of displacements that is zero.
+    """A sum of displacements and rotations that is zero.
 
-    :param terms: node, direction (unit vector) and factor of each term
+    :param terms: node, direction (unit vector) and factor of each displacement
+    :param turns: the same of each rotation
     """
 
     line: int
     card: str
     terms: list[tuple[str, np.ndarray, float]]
+    turns: list[tuple[str, np.ndarray, float]] = field(default_factory=list)
 
     def follow(self, joined: Mapping[str, str]) -> None:
         """Replace the names of merged nodes in its terms."""
-        self.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in self.terms]
+        for terms in (self.terms, self.turns):
+            terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in terms]
+
+    def nodes(self) -> list[str]:
+        """Return the node of each term."""
+        return [node for node, _, _ in (*self.terms, *self.turns)]
 
 
-@dataclass
+@dataclass(eq=False)
 class Follower:
-    """A node whose motion follows from the motion of other nodes.
+    """A node whose motion is the best fit to the motion of other nodes.
 
-    :param equations: equations for its displacement; empty: the displacement depends on rotations
+    :param follows: directions (k, 6) of its displacements and rotations that follow, unit vectors
+    :param others: of each other node its name, its weight, and the directions (m, 6) in which it counts
+    :param unsupported: names of its fields that are not supported
     """
 
     line: int
     card: str
     node: str
-    equations: list[Equation]
+    follows: np.ndarray
+    others: list[tuple[str, float, np.ndarray]]
+    unsupported: list[str] = field(default_factory=list)
+
+    def turns(self) -> bool:
+        """Return whether its rotation follows."""
+        return bool(self.follows[:, 3:].any())
+
+    def nodes(self) -> list[str]:
+        """Return its node and the others."""
+        return [self.node, *(node for node, _, _ in self.others)]
+
+    def follow(self, joined: Mapping[str, str]) -> None:
+        """Replace the names of merged nodes."""
+        self.node = joined.get(self.node, self.node)
+        self.others[:] = [(joined.get(node, node), weight, ways) for node, weight, ways in self.others]
+
+
+@dataclass
+class Mean:
+    """A node that follows the mean of others, which becomes a ``[[mean]]`` of the case.
+
+    :param weights: weight of each other node
+    :param directions: keys of a ``[[mean]]``
+    """
+
+    node: str
+    weights: dict[str, float]
+    directions: list[str]
 
 
 @dataclass
@@ -232,6 +269,7 @@ class Deck:
     hinges: list[Hinge] = field(default_factory=list)
     equations: list[Equation] = field(default_factory=list)
     followers: list[Follower] = field(default_factory=list)
+    means: list[Mean] = field(default_factory=list)
     mass: dict[str, float] = field(default_factory=dict)
     mass_line: dict[str, tuple[int, str]] = field(default_factory=dict)
     mass_scale: float = 1.0
@@ -354,10 +392,12 @@ class Deck:
         of[name] = of.get(name, np.zeros(3)) + moment
 
     def bent(self) -> set[str]:
-        """Return the nodes that rotate: beams end there that bend, or they belong to rigid arms or hinges."""
+        """Return the nodes that rotate: beams end there that bend, or they belong to rigid arms, hinges or means."""
         found = {end for bar in self.bars if bar.bending
                  for end, turned in zip(bar.nodes, bar.bending.turned_ends) if turned}
         found |= {arm.master for arm in self.arms} | {arm.node for arm in self.arms if arm.rotations}
+        found |= {one.node for one in self.followers if one.turns()}
+        found |= {one.node for one in self.means if any(len(direction) > 1 for direction in one.directions)}
         return found | {end for hinge in self.hinges for end in hinge.nodes}
 
     def ends_of(self, bar: Bar) -> tuple[np.ndarray, np.ndarray]:
@@ -396,8 +436,10 @@ class Deck:
 
 
 def carriers(deck: Deck) -> set[str]:
-    """Return the nodes at which bars, springs, rigid arms or hinges end."""
+    """Return the nodes at which bars, springs, rigid arms, hinges or means end."""
     found = {end for bar in deck.bars for end in bar.nodes}
+    found |= {node for one in deck.followers for node in one.nodes()}
+    found |= {node for one in deck.means for node in (one.node, *one.weights)}
     found |= {end for item in deck.hinges for end in item.nodes} | {end for arm in deck.arms
                                                                     for end in (arm.master, arm.node)}
     return found | {end for spring in deck.springs for end in (spring.first, spring.second) if end}

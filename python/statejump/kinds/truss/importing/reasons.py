@@ -18,6 +18,13 @@ REASONS: dict[str, str] = {
     "gradient_on_link": "a temperature gradient of a pin-jointed bar",
     "gravity_on_part": "it acts on a part of the structure only",
     "heat_transfer": "heat transfer: its supports are temperatures",
+    "mean_of_rotations": "its mean contains the rotation of node {node}, which no beam rotates",
+    "mean_reference_aside": "its reference node is not at the centre of its nodes; Abaqus respects the distance, "
+                            "CalculiX does not",
+    "mean_expands": "thermal expansion of a mean",
+    "mean_undetermined": "its nodes do not determine the motion of the node that follows, as nodes on one line",
+    "mean_weighting": "weights that depend on the distance, or rotations of the nodes",
+    "other_dependent_displacements": "other displacements are dependent than those of its reference node",
     "lateral_load": "it acts across a pin-jointed bar",
     "load_on_released_beam": "its beam has a released end or an offset",
     "load_on_tapered_beam": "the section of its beam varies",

@@ -58,6 +58,16 @@ def is_held(deck: Deck, node: str, direction: np.ndarray) -> bool:
     return bool(np.linalg.norm(rest) <= SAME * np.linalg.norm(direction))
 
 
+def is_rotation_held(deck: Deck, node: str, direction: np.ndarray) -> bool:
+    """Whether the supports of a node hold its rotation about a direction."""
+    held = deck.held_rotations.get(node)
+    if not held:
+        return False
+    basis = basis_of(np.array(held))
+    rest = direction - basis.T @ (basis @ direction)
+    return bool(np.linalg.norm(rest) <= SAME * np.linalg.norm(direction))
+
+
 def basis_of(directions: np.ndarray) -> np.ndarray:
     """Return orthogonal directions that span the given rows."""
     _, sizes, spanned = np.linalg.svd(directions)

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from statejump.core.errors import MissingKey, StatejumpError
+from statejump.kinds.truss.constraints import AXES, TURNS
 from statejump.kinds.truss.generate.document import Document, finished
 from statejump.kinds.truss.importing.beams import beam_keys, bend_by_weight, rotations
 from statejump.kinds.truss.importing.bodies import named_nodes
 from statejump.kinds.truss.importing.joints import matching, put_in
-from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
+from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Mean, Spring
 from statejump.kinds.truss.importing.supports import supports
+from statejump.kinds.truss.means import ALL
 from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
 # Fraction of the truss size below which a difference of coordinates is zero, because decks have eight digits.
@@ -125,7 +127,8 @@ def case_document(
         made["reduced"] = {"increments_per_branch": 1}
     _springs(deck, made, units, dimension)
     _expansions(deck, made, members)
-    made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
+    made["constraint"] = [_constraint(f"C{number}", one, units) for number, one in enumerate(deck.equations, start=1)]
+    made["mean"] = [_mean(f"M{number}", one) for number, one in enumerate(deck.means, start=1)]
     _bodies(deck, made, units)
     _leave_impossible(deck, members, heated=any(changes) or "thermal" in more, weighed=any(gravity) or deck.modal)
     deck.settle()
@@ -189,7 +192,8 @@ def _dimension(deck: Deck, used: set[str]) -> int:
     if (deck.hinges or any(np.any(moment[:2]) for moment in moments)
             or max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values())
             or deck.gravity[2] or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
-            or any(abs(way[2]) > FLAT for one in deck.equations for _, way, _ in one.terms)):
+            or any(abs(way[2]) > FLAT for one in deck.equations for _, way, _ in one.terms)
+            or any(np.abs(way[:2]).max() > FLAT for one in deck.equations for _, way, _ in one.turns)):
         return 3
     deck.leave("z of nodes", "all nodes are in one plane: the truss is planar", 0)
     return 2
@@ -211,16 +215,26 @@ def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
             spring.stiffness, units.force_N / units.length_m)})
 
 
-def _constraint(name: str, equation: Equation) -> dict[str, Any]:
+def _constraint(name: str, equation: Equation, units: Units) -> dict[str, Any]:
     """Return the constraint for an equation, without the small coefficients that rounding of directions causes."""
-    sums: dict[tuple[str, str], float] = {}
-    for node, way, factor in equation.terms:
-        for axis, part in zip("xyz", way):
-            sums[node, axis] = sums.get((node, axis), 0.0) + factor * float(part)
-    largest = max(abs(value) for value in sums.values())
-    terms = {term: value for term, value in sums.items() if abs(value) > ROUNDING * largest}
+    terms: dict[tuple[str, str], float] = {}
+    for axes, given, unit in ((AXES, equation.terms, 1.0), (TURNS, equation.turns, units.length_m)):
+        sums: dict[tuple[str, str], float] = {}
+        for node, way, factor in given:
+            for axis, part in zip(axes, way):
+                sums[node, axis] = sums.get((node, axis), 0.0) + factor * float(part)
+        largest = max((abs(value) for value in sums.values()), default=0.0)
+        terms |= {term: in_units(value, unit) for term, value in sums.items() if abs(value) > ROUNDING * largest}
     return {"name": name, "nodes": [node_name(node) for node, _ in terms], "directions": [axis for _, axis in terms],
             "coefficients": list(terms.values())}
+
+
+def _mean(name: str, mean: Mean) -> dict[str, Any]:
+    """Return the mean of a case."""
+    weights = list(mean.weights.values())
+    return {"name": name, "reference": node_name(mean.node), "nodes": [node_name(node) for node in mean.weights],
+            **({"weights": weights} if len(set(weights)) > 1 else {}),
+            **({"directions": mean.directions} if len(mean.directions) < len(ALL) else {})}
 
 
 def _bodies(deck: Deck, made: Document, units: Units) -> None:

@@ -27,21 +27,20 @@ CLIMB = 0.4  # largest fraction of the paths of one start
 class Best:
     """The worst history found so far for a quantity of an output."""
 
-    value_m: float = 0.0
+    value: float = 0.0
     corners_K: np.ndarray | None = None
 
 
-def jumps_m(output: Output, path: TrussPath, returns_s: np.ndarray) -> np.ndarray:
-    """Return |output − output at the start| [m] at each return to ΔT = 0."""
+def excursions(output: Output, path: TrussPath) -> np.ndarray:
+    """Return the size of the change of an output since the start, in its unit, along a path."""
+    values = output.vector(path.states["displacement_m"])
+    return np.asarray(np.linalg.norm(values - values[0], axis=-1))
+
+
+def jumps(output: Output, path: TrussPath, returns_s: np.ndarray) -> np.ndarray:
+    """Return the size of the change of an output since the start at each return to ΔT = 0."""
     at = [int(np.abs(path.states["time_s"] - time).argmin()) for time in returns_s]
-    values = output.value(path.states["displacement_m"])
-    return np.abs(values[at] - values[0])
-
-
-def peak_m(output: Output, path: TrussPath) -> float:
-    """Return the largest |output − output at the start| [m] along a path."""
-    values = output.value(path.states["displacement_m"])
-    return float(np.abs(values - values[0]).max())
+    return excursions(output, path)[at]
 
 
 @dataclass
@@ -78,7 +77,7 @@ class Search:
             self._improve(target, begun + left * (number + 1) // len(self.best))
 
     def value(self, corners_K: np.ndarray, target: tuple[str, str]) -> float:
-        """Return a quantity of a history [m]; −1: it has no path. The best histories of all quantities are kept."""
+        """Return a quantity of a history; −1: it has no path. The best histories of all quantities are kept."""
         self.solved += 1
         self.on_progress(min(1.0, self.solved / self.total))
         try:
@@ -90,16 +89,17 @@ class Search:
             return -1.0
         values: dict[tuple[str, str], float] = {}
         for output in self.outputs:
-            jumps = jumps_m(output, path, self.histories.returns_s(len(corners_K)))
-            last = int(jumps.argmax())
-            values[output.name, JUMP] = self._keep((output.name, JUMP), float(jumps[last]), corners_K[:last + 1])
-            values[output.name, PEAK] = self._keep((output.name, PEAK), peak_m(output, path), corners_K)
+            sizes = jumps(output, path, self.histories.returns_s(len(corners_K)))
+            last = int(sizes.argmax())
+            values[output.name, JUMP] = self._keep((output.name, JUMP), float(sizes[last]), corners_K[:last + 1])
+            peak = float(excursions(output, path).max())
+            values[output.name, PEAK] = self._keep((output.name, PEAK), peak, corners_K)
         return values[target]
 
     def _keep(self, target: tuple[str, str], value: float, corners_K: np.ndarray) -> float:
         best = self.best[target]
-        if best.corners_K is None or value > best.value_m * (1 + BETTER):
-            best.value_m, best.corners_K = value, corners_K.copy()
+        if best.corners_K is None or value > best.value * (1 + BETTER):
+            best.value, best.corners_K = value, corners_K.copy()
         return value
 
     def _improve(self, target: tuple[str, str], until: int) -> None:
@@ -111,7 +111,7 @@ class Search:
         while self.solved < interior:
             self._climb(self._random(), target, min(interior, self.solved + most))
         corners = self._best_of(target)
-        value = self.best[target].value_m
+        value = self.best[target].value
         while self.solved < until:
             tried = corners.copy()
             which = self.rng.random(tried.shape) < max(1.0, 0.1 * tried.size) / tried.size

@@ -12,71 +12,77 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.sparse import diags
 
 from statejump.core.errors import NotAllowed, Range, StatejumpError
 from statejump.core.output import write_atomically
 from statejump.core.progress import OnProgress
 from statejump.core.tables import Shown, write_rows
 from statejump.core.units import text
-from statejump.kinds.truss.answers.jumps import most_moved, node_jumps, quick_path
+from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.bounds.history import LEAST, all_slides, large_enough
-from statejump.kinds.truss.bounds.outputs import Output, named
+from statejump.kinds.truss.bounds.outputs import Output, chosen
 from statejump.kinds.truss.bounds.ranges import parsed_range
-from statejump.kinds.truss.bounds.sliding import AXES
-from statejump.kinds.truss.bounds.study import Bounds, bounds
+from statejump.kinds.truss.bounds.result import Bounds, plain
+from statejump.kinds.truss.bounds.sliding import sliding
+from statejump.kinds.truss.bounds.study import bounds
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, solve
 from statejump.kinds.truss.worst.histories import CORNERS, Histories, histories
-from statejump.kinds.truss.worst.search import JUMP, QUANTITIES, Search, jumps_m, peak_m
+from statejump.kinds.truss.worst.search import JUMP, QUANTITIES, Search, excursions, jumps
 from statejump.schema.rules import WHOLE, Rule
 
 PATHS, CYCLES = 300, 3
 PATHS_RULE = Rule(WHOLE, allowed=Range(1, 1_000_000))
 CYCLES_RULE = Rule(WHOLE, allowed=Range(1, 100))
 ABOVE = 1e-6  # relative excess over a bound that is rounding
+MOST_ROWS = 3  # of a vector output, for which given histories are derived
 AGREE = 1e-2  # relative difference between the search and the case that is reported
 
 
 @dataclass(frozen=True)
 class Worst:
-    """The worst history found for a quantity of an output.
+    """The worst history found for a quantity of an output; numbers are in the unit of the output.
 
     :param quantity: "residual jump" or "peak", both from the start of the case
-    :param found_m: the quantity in the run of ``case``
-    :param bound_m: bound of the linear truss; NaN: none
-    :param guaranteed_m: bound of the state jump over any history, with the margin of exact geometry; NaN: none
-    :param nominal_m: the quantity in the case of the user; NaN: its program does not return to ΔT = 0
+    :param found: the quantity in the run of ``case``
+    :param bound: bound of the linear truss; NaN: none
+    :param guaranteed: bound of the state jump over any history, with the margin of exact geometry; NaN: none
+    :param nominal: the quantity in the case of the user; NaN: its program does not return to ΔT = 0
     """
 
     output: Output
     quantity: str
-    found_m: float
-    bound_m: float
-    guaranteed_m: float
-    nominal_m: float
+    found: float
+    bound: float
+    guaranteed: float
+    nominal: float
     case: TrussCase
 
     @property
     def share(self) -> float:
         """The quantity over its bound."""
-        return self.found_m / self.bound_m if self.bound_m > 0 else nan
+        return self.found / self.bound if self.bound > 0 else nan
 
     @property
     def verdict(self) -> str:
         """How close the history comes to the bound."""
-        what = f"{self.output.name}, {self.quantity}: {text(self.found_m, 'm', 5)}"
+        what = f"{self.output.name}, {self.quantity}: {text(self.found, self.output.unit, 5)}"
         if not isfinite(self.share):
             return f"{what}; no bound: a worse history may exist"
         if self.share <= 1 + ABOVE:
-            return f"{what}, {100 * self.share:.4g} % of the bound of the linear truss"
+            return f"{what}, {100 * self.share:.4g} % of the bound"
         return (f"{what}, {100 * (self.share - 1):.2g} % above the bound of the linear truss: rotations and "
                 "temperatures change its stiffness")
 
     def record(self) -> dict[str, Any]:
         """Return the result as plain values."""
-        numbers = {key: value if isfinite(value) else None for key, value in vars(self).items() if key.endswith("_m")}
-        return {"output": self.output.name, "quantity": self.quantity, **numbers,
-                "found_over_bound": self.share if isfinite(self.share) else None, "case": f"{self.case.name}.toml"}
+        unit = self.output.unit
+        numbers = {"found": self.found, "bound": self.bound, "guaranteed": self.guaranteed, "nominal": self.nominal}
+        return {"output": self.output.name, "quantity": self.quantity,
+                **{f"{key}_{unit}": plain(value) for key, value in numbers.items()},
+                "found_over_bound": plain(self.share), "case": f"{self.case.name}.toml"}
 
 
 @dataclass(frozen=True)
@@ -92,9 +98,10 @@ class WorstHistories:
 
     def summary_lines(self) -> list[Shown | str]:
         """Return the table and the lines that the command prints."""
-        heads = ["output", "quantity", "found [µm]", "bound [µm]", "found / bound", "the case [µm]", "found / the case"]
-        rows = [[one.output.name, one.quantity, _um(one.found_m), _um(one.bound_m), _number(one.share, 5),
-                 _um(one.nominal_m), _number(one.found_m / (one.nominal_m or nan), 4)] for one in self.worst]
+        heads = ["output", "quantity", "found", "bound", "found / bound", "the case", "found / the case"]
+        rows = [[one.output.name, one.quantity, *(_shown(value, one.output.unit) for value in (one.found, one.bound)),
+                 _number(one.share, 5), _shown(one.nominal, one.output.unit),
+                 _number(one.found / (one.nominal or nan), 4)] for one in self.worst]
         table = Shown(f"worst histories of {self.name}: {self.text}; from the start of the case", heads, rows,
                       left=("output", "quantity"))
         return [table, *(one.verdict for one in self.worst), *self.facts]
@@ -108,12 +115,14 @@ class WorstHistories:
         """Write the table and a case of each history into a folder; return the paths."""
         with write_atomically(folder / "worst.json") as stream:
             json.dump(self.record(), stream, indent=1)
-        table = write_rows(folder / "worst.csv", [one.record() for one in self.worst])
+        table = write_rows(folder / "worst.csv", [
+            {"output": one.output.name, "unit": one.output.unit, "quantity": one.quantity, "found": one.found,
+             "bound": one.bound, "nominal": one.nominal, "case": f"{one.case.name}.toml"} for one in self.worst])
         return [table, folder / "worst.json", *(one.case.save(folder / f"{one.case.name}.toml") for one in self.worst)]
 
 
-def _um(value: float) -> str:
-    return f"{1e6 * value:.6g}" if isfinite(value) else ""
+def _shown(value: float, unit: str) -> str:
+    return text(value, unit) if isfinite(value) else ""
 
 
 def _number(value: float, digits: int) -> str:
@@ -126,7 +135,7 @@ def worst(case: TrussCase, range_K: str | tuple[float, float], output: Sequence[
     """Search for the worst temperature histories of a truss.
 
     :param range_K: lowest and highest ΔT [K] of every member
-    :param output: ``node:NAME`` or ``node:NAME.x``; default: the displacement that may differ most
+    :param output: as for bounds, for example ``node:NAME.x``; default: the displacement that may differ most
     :param groups: patterns of names, separated by commas; members of a group have one common temperature
     :param cycles: largest number of cycles of a history
     :param paths: number of paths for each quantity of each output
@@ -154,25 +163,26 @@ def worst(case: TrussCase, range_K: str | tuple[float, float], output: Sequence[
 
 def _bounded(case: TrussCase, known: Histories, names: Sequence[str]) -> tuple[Bounds | None, str, list[Output]]:
     """Return bounds or the reason why there are none, and the outputs."""
-    truss = known.prepared.resolve()
-    free = ~truss.nodes.fixed.ravel()
-    outputs = [one for name in names for one in named(truss, name, lambda dof: bool(free[dof]))]
-    limits, reason = None, ""
+    limits, reason, outputs = None, "", list[Output]()
     try:
-        limits = bounds(known.prepared, [one.name for one in outputs], simulate=False)
+        limits = bounds(known.prepared, names, simulate=False)
     except NotAllowed:
         raise
     except StatejumpError as problem:
         reason = f"no bound: {problem}"
     if limits is not None:
-        limits = limits if outputs else replace(limits, bounds=limits.bounds[:1])
-        return limits, reason, [one.output for one in limits.bounds]
-    if not outputs:
-        jumps = node_jumps(path := quick_path(case.resolve()))[-1]
-        node = most_moved(path)
-        axis = int(np.abs(jumps[node]).argmax())
-        outputs = [Output(f"node:{truss.nodes.names[node]}.{AXES[axis]}", node, axis)]
-    return limits, reason, outputs
+        limits = limits if names else replace(limits, bounds=limits.bounds[:1])
+        outputs = [one.output for one in limits.bounds]
+    else:
+        outputs = chosen(_Free(case.resolve()), names, lambda: np.abs(node_jumps(quick_path(case.resolve()))[-1]))
+    return limits, reason, outputs if names else outputs[:1]
+
+
+class _Free:
+    """Displacements of the nodes of a truss, those of supports omitted."""
+
+    def __init__(self, truss: ResolvedTruss) -> None:
+        self.truss, self.of_nodes = truss, diags(1.0 - truss.nodes.fixed.ravel()).tocsr()
 
 
 def _given(known: Histories, limits: Bounds | None, outputs: Sequence[Output], cycles: int) -> Iterator[np.ndarray]:
@@ -182,13 +192,15 @@ def _given(known: Histories, limits: Bounds | None, outputs: Sequence[Output], c
         yield _repeated(np.array([np.full(count, first), np.full(count, second)]), cycles)
     if limits is None:
         return
-    of = limits.of
+    try:
+        of = sliding(known.prepared)
+    except StatejumpError:  # with clearances or free motions
+        return
     # The first variable of the bounds is the common program, which no member follows.
     temperatures = replace(limits.temperatures, of_elements=limits.temperatures.of_elements[:, 1:],
                            lowest_K=limits.temperatures.lowest_K[1:], highest_K=limits.temperatures.highest_K[1:])
     heating = of.slides @ of.solve(of.heating_N_per_K @ temperatures.of_elements)
-    for output in outputs:
-        gain, thermal = of.gains(output.row(of))
+    for gain, thermal in (pair for output in outputs for pair in zip(*of.gains_of(output.rows(of)[:MOST_ROWS]))):
         for drive in ((gain * of.limit_N) @ heating, thermal @ temperatures.of_elements):
             ends = [np.where(sign * drive > 0, known.high_K, known.low_K) for sign in (1.0, -1.0)]
             for pair in (ends, ends[::-1]):
@@ -223,29 +235,32 @@ def _confirmed(case: TrussCase, known: Histories, output: Output, quantity: str,
     """Return the worst history as a case, with the number of its run."""
     best = search.best[output.name, quantity]
     assert best.corners_K is not None
-    name = re.sub(r"[^A-Za-z0-9_-]", "_", f"{case.name}_worst_{quantity.split()[-1]}_{output.name.partition(':')[2]}")
+    short = output.name.removeprefix("node:")
+    name = re.sub(r"[^A-Za-z0-9_-]", "_", f"{case.name}_worst_{quantity.split()[-1]}_{short}")
     made = known.case(best.corners_K, name, f"History with the worst {quantity} of {output.name}")
     path = solve(made)
-    found = (float(jumps_m(output, path, known.returns_s(len(best.corners_K)))[-1]) if quantity == JUMP
-             else peak_m(output, path))
-    if abs(found - best.value_m) > AGREE * found:
-        facts.append(f"{output.name}, {quantity}: the search with few increments found {text(best.value_m, 'm', 5)}, "
-                     f"the run of the case {text(found, 'm', 5)}")
-    bound, guaranteed = _limit(limits, output, quantity, nominal)
-    own = peak_m(output, nominal) if quantity == "peak" else nan
+    found = (float(jumps(output, path, known.returns_s(len(best.corners_K)))[-1]) if quantity == JUMP
+             else float(excursions(output, path).max()))
+    if abs(found - best.value) > AGREE * found:
+        facts.append(f"{output.name}, {quantity}: the search with few increments found "
+                     f"{text(best.value, output.unit, 5)}, the run of the case {text(found, output.unit, 5)}")
+    bound, guaranteed = _limit(limits, output, quantity)
+    own = float(excursions(output, nominal).max()) if quantity == "peak" else nan
     if quantity == JUMP and case.has_jump:
-        own = float(jumps_m(output, nominal, nominal.states["time_s"][-1:])[0])
+        own = float(jumps(output, nominal, nominal.states["time_s"][-1:])[0])
     return Worst(output, quantity, found, bound, guaranteed, own, made)
 
 
-def _limit(limits: Bounds | None, output: Output, quantity: str, nominal: TrussPath) -> tuple[float, float]:
-    """Return the bound [m] of a quantity of the linear truss within the range, and that of any history, guaranteed."""
+def _limit(limits: Bounds | None, output: Output, quantity: str) -> tuple[float, float]:
+    """Return the bound of a quantity of the linear truss within the range, and that of any history, guaranteed."""
     if limits is None:
         return nan, nan
-    bound = next(one for one in limits.bounds if one.output == output)
+    bound = next(one for one in limits.bounds if one.output.name == output.name)
     if quantity == JUMP:
-        within = bound.range_jump_m if isfinite(bound.range_jump_m) else inf
-        return min(bound.jump_m, within), bound.jump_m + bound.margin_m
-    start = output.value(nominal.states["displacement_m"][0]) - output.value(limits.of.displacement_m)
-    low, high = bound.peak_thermal_m
-    return max(high - start, start - low) + 0.5 * bound.spread_m, nan
+        within = bound.range_jump if isfinite(bound.range_jump) else inf
+        return min(bound.jump, within), bound.jump + bound.margin
+    if limits.letter != "A" or not output.scalar:
+        return nan, nan
+    start = float(bound.path[0, 0])
+    low, high = bound.peak_thermal
+    return max(high - start, start - low) + 0.5 * bound.spread, nan

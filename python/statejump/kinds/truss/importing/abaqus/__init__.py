@@ -36,7 +36,8 @@ STAGES: tuple[dict[str, Reading], ...] = (
     # Read after the steps, because the result depends on supports.
     {"SPRING": sections.spring, "EQUATION": loads.equation, "SURFACE": bodies.surface},
     {"RIGID BODY": bodies.rigid_body, "KINEMATIC COUPLING": bodies.kinematic_coupling, "COUPLING": bodies.coupling,
-     "KINEMATIC": bodies.kinematic},
+     "KINEMATIC": bodies.kinematic, "DISTRIBUTING": bodies.distributing,
+     "DISTRIBUTING COUPLING": bodies.distributing_coupling},
 )
 SUPPORTED = 7  # the first stage behind the steps
 # Keywords that are read with the steps, or that delimit parts.
@@ -144,7 +145,8 @@ def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tup
 def _bars(model: Model) -> None:
     """Make bars from elements. An element becomes two bars if another item acts on its middle node."""
     shared = Counter(end for one in model.elements.values() for end in set(one.nodes))
-    shared.update(term[0] for one in model.deck.equations for term in one.terms)
+    shared.update(node for one in model.deck.equations for node in one.nodes())
+    shared.update(node for one in model.deck.followers for node in one.nodes())
     shared.update(moment.node for moment in model.deck.moments)
     shared.update(node for body in model.deck.rigid for node in body.nodes)
     for one in model.elements.values():

@@ -327,14 +327,15 @@ def equation(model: Model, block: Block, scope: Scope) -> None:
 
 
 def _add(model: Model, line: int, parts: list[list[str]], scope: Scope) -> None:
-    terms = []
+    made = Equation(line, "*EQUATION", [])
     for word, direction, factor in parts:
         nodes = model.nodes_of(line, word, scope)
         at, value = model.whole(line, direction), model.number(line, factor)
-        if len(nodes) != 1 or not 1 <= at <= 3:
+        if len(nodes) != 1 or not 1 <= at <= 6:
             model.deck.refuse("*EQUATION", "node_sets" if len(nodes) != 1 else "rotation", line, "EQUATION")
             return
         for node in nodes:
             if value:
-                terms.append((node, model.frame(node).directions(model.deck.nodes[node])[at - 1], value))
-    model.deck.equations.append(Equation(line, "*EQUATION", terms))
+                terms = made.terms if at <= 3 else made.turns
+                terms.append((node, model.frame(node).directions(model.deck.nodes[node])[(at - 1) % 3], value))
+    model.deck.equations.append(made)

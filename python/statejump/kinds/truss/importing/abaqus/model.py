@@ -91,8 +91,8 @@ class Model:
     thickness: dict[str, tuple[float, float]] = field(default_factory=dict)  # of *NODAL THICKNESS
     frames: dict[str, Frame] = field(default_factory=dict)  # directions of supports and loads of nodes
     system: Frame = BASIC  # of positions
-    surfaces: dict[str, list[str]] = field(default_factory=dict)  # nodes of *SURFACE, TYPE=NODE
-    coupling: tuple[str, list[str]] | None = None  # master and nodes of the last *COUPLING
+    surfaces: dict[str, dict[str, float]] = field(default_factory=dict)  # nodes of *SURFACE, TYPE=NODE, with areas
+    coupling: tuple[str, dict[str, float]] | None = None  # master, nodes and areas of the last *COUPLING
     set_items: int = 0
     sorted_numbers: dict[tuple[bool, str], tuple[int, list[int]]] = field(default_factory=dict)
 

@@ -12,7 +12,7 @@ SOLVE = "how a program solves"
 DYNAMIC = "acts in dynamics, buckling or modes only; the import takes structure, static loads and temperatures"
 HEAT = "heat transfer: temperatures are those of *TEMPERATURE"
 CONTACT = "contact"
-TIES = "couplings of surfaces, distributing couplings, and equations of other kinds"
+TIES = "couplings of surfaces, and equations of other kinds"
 BODY = "rigid body or equations, as RBE2 of Nastran"
 USER = "a routine of the user"
 # In this table "_" stands for a blank in a name, because blanks separate names.
@@ -63,7 +63,8 @@ KEYWORDS: dict[str, Card] = table(
                   "DEPENDENCIES": TABLE}),
     used("MASS", "mass of nodes", "ELSET ALPHA COMPOSITE TYPE", idle={"ALPHA COMPOSITE": DYNAMIC},
          refused={"TYPE": "a mass of one direction"}),
-    used("EQUATION", "support, one node of two at one place, loads of a node at which no bar ends, or constraint",
+    used("EQUATION", "support, one node of two at one place, loads of a node at which no bar ends, or constraint; "
+         "directions 4 to 6 where beams end",
          "INPUT REMOVE", refused={"INPUT": "a file of its own", "REMOVE": TIME}),
     used("BOUNDARY", "directions without motion", "OP AMPLITUDE FIXED USER SUBMODEL STEP DATASET LOAD_CASE MASS_FLOW "
          "TYPE REGION_TYPE",
@@ -110,8 +111,12 @@ KEYWORDS: dict[str, Card] = table(
          refused={"ORIENTATION": "directions of its own", "INFLUENCE_RADIUS": "a part of its surface",
                   "ALPHA": "thermal expansion of a rigid body"}),
     used("KINEMATIC", "components of *COUPLING"),
+    used("DISTRIBUTING", "`[[mean]]` of *COUPLING; weights are the areas of its surface of nodes, or 1",
+         "COUPLING WEIGHTING_METHOD CYCLIC_SYMMETRY", refused={"CYCLIC_SYMMETRY": "cyclic symmetry"}),
+    used("DISTRIBUTING_COUPLING", "`[[mean]]` with the node of an element DCOUP2D or DCOUP3D at the centre of "
+         "the nodes", "ELSET"),
     # Not supported.
-    refused("MPC TIE DISTRIBUTING DISTRIBUTING_COUPLING "
+    refused("MPC TIE "
             "EMBEDDED_ELEMENT MULTI_POINT_CONSTRAINTS NETWORK_MPC SHELL_TO_SOLID_COUPLING", TIES),
     refused("SURFACE_INTERACTION SURFACE_BEHAVIOR CONTACT_PAIR CONTACT FRICTION CLEARANCE GAP CONTACT_DAMPING "
             "CONTACT_CONTROLS CHANGE_CONTACT_TYPE MODEL_CHANGE", CONTACT),
@@ -146,11 +151,12 @@ KEYWORDS: dict[str, Card] = table(
 )
 
 # Families of elements; "nothing" has no influence.
-BAR, BEAM, SPRING, MASS, NOTHING = "bar", "beam", "spring", "mass", "nothing"
+BAR, BEAM, SPRING, MASS, COUPLING, NOTHING = "bar", "beam", "spring", "mass", "coupling", "nothing"
 ELEMENTS: dict[str, tuple[str, int]] = {
     "T2D2": (BAR, 2), "T3D2": (BAR, 2), "T2D3": (BAR, 3), "T3D3": (BAR, 3), "T2D2T": (BAR, 2), "T3D2T": (BAR, 2),
     **{name: (BEAM, 2) for name in ("B21", "B21H", "B23", "B31", "B31R", "B31H", "B31OS", "B33", "PIPE21", "PIPE31")},
     **{name: (BEAM, 3) for name in ("B22", "B32", "B32R", "B32H", "B32OS", "PIPE22", "PIPE32")},
     "SPRINGA": (SPRING, 2), "SPRING1": (SPRING, 1), "SPRING2": (SPRING, 2), "MASS": (MASS, 1),
+    "DCOUP2D": (COUPLING, 1), "DCOUP3D": (COUPLING, 1),
     "ROTARYI": (NOTHING, 1), "DASHPOTA": (NOTHING, 2), "DASHPOT1": (NOTHING, 1), "DASHPOT2": (NOTHING, 2),
 }

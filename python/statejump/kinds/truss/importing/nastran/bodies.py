@@ -10,7 +10,6 @@ from statejump.kinds.truss.importing.coupling import ALL, MOVES, couple
 from statejump.kinds.truss.importing.model import Equation, Follower, RigidBody
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
-from statejump.kinds.truss.importing.supports import SAME
 
 
 def rbar(reader: Reader, card: Card) -> None:
@@ -63,7 +62,46 @@ def _couple(reader: Reader, card: Card, master: str, others: list[str], componen
 
 def rbe3(reader: Reader, card: Card) -> None:
     """Read a node that follows the mean motion of others (RBE3)."""
-    reader.deck.followers.append(Follower(card.line, card.name, reader.node(card, 2), equations(reader, card)))
+    node = reader.node(card, 2)
+    if not set(card[3]) <= ALL:
+        raise reader.fail(card, "deck_bad_value", problem=f"components {card[3]} are not of the digits 1 to 6")
+    others, unsupported = _others(reader, card)
+    follows = _ways(reader, node, card[3])
+    reader.deck.followers.append(Follower(card.line, card.name, node, follows, others, unsupported))
+
+
+def _ways(reader: Reader, node: str, components: str) -> np.ndarray:
+    """Return the directions (k, 6) of components of a node in its displacement system."""
+    axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])
+    return np.kron(np.eye(2), axes)[[int(one) - 1 for one in sorted(set(components))]].reshape(-1, 6)
+
+
+def _others(reader: Reader, card: Card) -> tuple[list[tuple[str, float, np.ndarray]], list[str]]:
+    """Return nodes, weights and components of an RBE3, and its fields that are not supported."""
+    found: list[tuple[str, float, np.ndarray]] = []
+    unsupported: list[str] = []
+    texts = [text for text in card.fields[4:] if text]
+    while texts:
+        if texts[0].upper() == "UM":
+            unsupported.append("UM")
+            texts = texts[next((at for at, text in enumerate(texts) if text.upper() == "ALPHA"), len(texts)):]
+            continue
+        if texts[0].upper() == "ALPHA":
+            if reader.number(replace(card, fields=texts), 1) != 0:
+                unsupported.append("ALPHA")
+            texts = texts[2:]
+            continue
+        weight = reader.number(replace(card, fields=texts), 0)
+        if len(texts) < 3 or not set(texts[1]) <= ALL or not weight > 0:
+            raise reader.fail(card, "deck_bad_value", problem=f"{' '.join(texts[:2])} is no weight with its components")
+        components, texts = texts[1], texts[2:]
+        count = next((at for at, text in enumerate(texts) if not text.isdecimal() and text.upper() != "THRU"),
+                     len(texts))
+        found += [(name, weight, _ways(reader, name, components)) for name in reader.several(card, texts[:count])]
+        texts = texts[count:]
+    if not found:
+        raise reader.fail(card, "deck_incomplete", needed="nodes")
+    return found, unsupported
 
 
 def rrod(reader: Reader, card: Card) -> None:
@@ -78,72 +116,22 @@ def rrod(reader: Reader, card: Card) -> None:
 
 
 def mpc(reader: Reader, card: Card) -> None:
-    """An equation between displacements."""
+    """An equation between displacements and rotations."""
     # Each line of the card has two terms: node, component, factor.
     places = [place for start in range(0, len(card.fields), 8) for place in (start + 1, start + 4) if card[place]]
     if {card[place + 1] for place in places} <= set("456") and not reader.bends():
         reader.deck.leave(card.name, "an equation of rotations: ends of bars turn freely", card.line)
         return
-    terms = []
+    made = Equation(card.line, card.name, [])
     for place in places:
         factor = reader.number(card, place + 2, 0.0)
         component = card[place + 1] or "0"
-        if component not in MOVES:
-            reader.deck.refuse(card.name, "scalar_point" if component == "0" else "rotation", card.line)
+        if component not in ALL:
+            reader.deck.refuse(card.name, "scalar_point", card.line)
             return
         node = reader.node(card, place)
         axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])
         if factor:
-            terms.append((node, axes[int(component) - 1], factor))
-    reader.deck.equations.append(Equation(card.line, card.name, terms))
-
-
-def equations(reader: Reader, card: Card) -> list[Equation]:
-    """Return the equations for the translations in REFC; empty if the card needs rotations or weights by component.
-
-    :raises Unreadable: a field is not a number, or a node does not exist
-    """
-    node, components = reader.node(card, 2), [one for one in card[3] if one in MOVES]
-    weighted = _weights(reader, card)
-    if weighted is None or not components or node in weighted:
-        return []
-    places = np.array([reader.deck.nodes[one] for one in weighted])
-    weights = np.array(list(weighted.values()))
-    centre = weights @ places / weights.sum()
-    arms, lever = places - centre, np.subtract(reader.deck.nodes[node], centre)
-    squares = np.einsum("i,ij,ij->", weights, arms, arms)
-    inertia = squares * np.eye(3) - np.einsum("i,ij,ik->jk", weights, arms, arms)
-    turns = np.linalg.pinv(inertia, rcond=SAME**2, hermitian=True)
-    size = np.linalg.norm(lever)
-    found = []
-    for component in components:
-        axis = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])[int(component) - 1]
-        moment = np.cross(lever, axis)
-        if np.linalg.norm(moment - inertia @ turns @ moment) > SAME * size:
-            return []  # collinear nodes do not determine the rotation about their line
-        shares = weights[:, None] * (axis / weights.sum() + np.cross(turns @ moment, arms))
-        terms = [(node, axis, 1.0)]
-        for name, share in zip(weighted, shares):
-            if (length := float(np.linalg.norm(share))) > 0:
-                terms.append((name, share / length, -length))
-        found.append(Equation(card.line, card.name, terms))
-    return found
-
-
-def _weights(reader: Reader, card: Card) -> dict[str, float] | None:
-    """Return the weight of each node; None if weights hold only for some components, or if the card has UM or ALPHA."""
-    found: dict[str, float] = {}
-    texts = [text for text in card.fields[4:] if text]
-    while texts:
-        if "." not in texts[0] or len(texts) < 3 or set(texts[1]) != MOVES:
-            return None
-        weight = reader.number(replace(card, fields=texts[:1]), 0)
-        texts = texts[2:]
-        count = next((at for at, text in enumerate(texts) if not text.isdecimal() and text.upper() != "THRU"),
-                     len(texts))
-        if not weight > 0:
-            return None
-        for name in reader.several(card, texts[:count]):
-            found[name] = found.get(name, 0.0) + weight
-        texts = texts[count:]
-    return found or None
+            terms = made.terms if component in MOVES else made.turns
+            terms.append((node, axes[(int(component) - 1) % 3], factor))
+    reader.deck.equations.append(made)

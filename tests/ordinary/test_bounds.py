@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A small part of the campaign of bounds."""
+from __future__ import annotations
+
+from argparse import Namespace
+from collections import Counter
+
+import bounds_campaign
+
+
+def test_no_state_of_ordinary_structures_leaves_its_bounds() -> None:
+    families = ["warren", "tower", "rib", "chain", "bracket"]
+    arguments = Namespace(count=3, seed=50, most=3, histories=1, families=families, classes=["A", "B", "C"], limit=100)
+    rows = list(bounds_campaign.compared(arguments, Counter()))
+    assert len({(row["family"], row["seed"]) for row in rows}) >= 4
+    assert not [row for row in rows if row["outside"]]
+    assert all(row["reached_m"] <= row["spread_m"] * (1 + 1e-6) for row in rows)
+
+
+def test_the_table_counts_states_outside() -> None:
+    row = dict.fromkeys(bounds_campaign.FIELDS, 1) | {"class": "A", "quality": "exact", "outside": 1, "spread_m": 2.0}
+    assert "| A | exact | 1 | 1 | 1 | 0.5000 | 0.5000 |" in bounds_campaign.table([row])
