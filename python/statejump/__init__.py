@@ -22,7 +22,7 @@ from statejump import _paths
 from statejump._version import __version__
 
 if TYPE_CHECKING:
-    from statejump.api import compare as compare, load as load, modes as modes, statics as statics
+    from statejump.api import compare as compare, load as load, modes as modes, statics as statics, worst as worst
     from statejump.bores.measure import bore as bore
     from statejump.campaign.calls import montecarlo as montecarlo, sweep as sweep
     from statejump.core.case import Case as Case
@@ -40,7 +40,7 @@ if sys.version_info[:2] != _paths.PYTHON_VERSION:
 
 # Module of each public name.
 _PLACES = {
-    **dict.fromkeys(("compare", "load", "modes", "statics"), "statejump.api"),
+    **dict.fromkeys(("compare", "load", "modes", "statics", "worst"), "statejump.api"),
     "bore": "statejump.bores.measure",
     **dict.fromkeys(("montecarlo", "sweep"), "statejump.campaign.calls"),
     "identify": "statejump.identification.result",

@@ -2,14 +2,15 @@
 """Functions of the public interface: ``import statejump as sj`` provides them as ``sj.load`` and so on."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from statejump.core.case import Case
-from statejump.control.capabilities import JointStatics, RestSets, VibrationModes
+from statejump.core.case import Case, Progress
+from statejump.control.capabilities import JointStatics, RestSets, VibrationModes, WorstCases
 from statejump.core.comparison import FIRST, SECOND, Comparison, of_two
 from statejump.core.errors import StatejumpError
+from statejump.core.progress import shown
 from statejump.core.run import Run
 from statejump.kinds import require
 from statejump.kinds.loading import load_case
@@ -63,3 +64,23 @@ def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
     :raises StatejumpError: this kind of case has no rest positions, or the mesh of the case is unusable
     """
     return require(case, JointStatics).statics(case, friction_coefficient)
+
+
+def worst(case: Case, range_K: str | tuple[float, float], *, output: Sequence[str] = (), groups: Sequence[str] = (),
+          cycles: int = 3, paths: int = 300, seed: int = 0, progress: Progress = False) -> Any:
+    """Search for the temperature histories with the largest state jump and the largest excursion of a truss.
+
+    :param range_K: lowest and highest ΔT [K] of every member
+    :param output: as for bounds, for example ``node:NAME.x``; default: the displacement that may differ most
+    :param groups: patterns of names, separated by commas; members of a group have one common temperature
+    :param cycles: largest number of cycles of a history
+    :param paths: number of paths for each quantity of each output
+    :param seed: of the random histories
+    :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
+    :return: :class:`statejump.kinds.truss.worst.study.WorstHistories`
+    :raises StatejumpError: this kind of case has no such search, an argument is invalid, or no history has a path
+    """
+    kind = require(case, WorstCases)
+    with shown(progress, "worst histories") as on_progress:
+        return kind.worst(case, range_K, output=output, groups=groups, cycles=cycles, paths=paths, seed=seed,
+                          on_progress=on_progress)

@@ -69,6 +69,13 @@ class RestBounds(Protocol):
                attain: bool = False, simulate: bool | None = None) -> Any: ...
 
 
+@capability("worst")
+class WorstCases(Protocol):
+    """Search for worst temperature histories; see :func:`statejump.kinds.truss.worst.study.worst`."""
+
+    def worst(self, case: Any, range_K: str | tuple[float, float], **settings: Any) -> Any: ...
+
+
 @capability("truss creak")
 class Creaking(Protocol):
     """Slips of the joints of a truss in motion, and the acceleration of a node; see :func:`statejump.truss.creak`."""

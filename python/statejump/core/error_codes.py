@@ -670,6 +670,21 @@ CODES: dict[str, Code] = {
         cause="its thermal patterns follow different programs, a bound varies one temperature for each item",
     ),
     "bounds_bad_range": Code(cause="must be LOWEST:HIGHEST with LOWEST <= 0 <= HIGHEST [K], for example -80:60"),
+    "worst_part": Code(
+        what="{part}: the search for worst histories cannot replace its temperatures",
+        cause="they are not those of one program",
+        remedy="give the part one program and a constant coefficient",
+    ),
+    "worst_without_members": Code(
+        what="no member expands", cause="temperatures do not move the truss",
+        remedy="give links or beams thermal_expansion_per_K",
+    ),
+    "worst_bad_group": Code(cause="no member that expands and is in no earlier group has such a name"),
+    "worst_without_path": Code(
+        what="no history within the range has a quasi-static path",
+        cause="{cause}",
+        remedy="reduce the range",
+    ),
     "no_moving_mass": Code(
         what="nothing that moves has a mass", remedy="give links, beams or nodes a density or a mass",
     ),

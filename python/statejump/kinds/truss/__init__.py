@@ -60,6 +60,7 @@ class Truss(Kind[TrussCase]):
     contact_problems = Later("statejump.kinds.truss.contact_problems:contact_problems")
     creak = Later("statejump.kinds.truss.creak:creak")
     bounds = Later("statejump.kinds.truss.bounds.study:bounds")
+    worst = Later("statejump.kinds.truss.worst.study:worst")
     modes = Later("statejump.kinds.truss.modes:modes")
     control = Later("statejump.kinds.truss.control.study:control")
     answers = Later("statejump.kinds.truss.answers.study:answer")

@@ -55,7 +55,7 @@ def attained(case: TrussCase, of: Sliding, output: Output, direction: np.ndarray
     heating = of.slides @ of.solve(of.heating_N_per_K @ members.of_elements)
     spread = 2 * float(np.abs(gain) @ of.limit_N)
     found: list[Attained] = []
-    ways: list[Way] = [_all_slides, *(partial(_large_enough, least) for least in LEAST)]
+    ways: list[Way] = [all_slides, *(partial(large_enough, least) for least in LEAST)]
     for way in ways:
         legs = way(of, members, heating, gain)
         if legs is None or np.abs(legs).max() > MOST_K:
@@ -75,7 +75,7 @@ def _simulated(case: TrussCase, output: Output, largest_K: float) -> Attained:
     return Attained(case, output.change(*path.states["displacement_m"][at]), largest_K)
 
 
-def _all_slides(of: Sliding, members: Temperatures, heating: np.ndarray, gain: np.ndarray) -> np.ndarray | None:
+def all_slides(of: Sliding, members: Temperatures, heating: np.ndarray, gain: np.ndarray) -> np.ndarray | None:
     """Return temperatures (legs, members) at the corners of a history in which all joints slip once to the highest
     state and once to the lowest one; None: the members do not move the joints independently.
 
@@ -122,8 +122,8 @@ def _exact(of: Sliding, members: Temperatures, temperature: np.ndarray, friction
     return made
 
 
-def _large_enough(least: float, of: Sliding, members: Temperatures, heating: np.ndarray, gain: np.ndarray
-                  ) -> np.ndarray | None:
+def large_enough(least: float, of: Sliding, members: Temperatures, heating: np.ndarray, gain: np.ndarray
+                 ) -> np.ndarray | None:
     """Return temperatures so large that, as they return to zero, joints slip in the direction of the bound; None: the
     members do not move the joints in these directions.
 
