@@ -394,7 +394,8 @@ CODES: dict[str, Code] = {
     "rare_needs_limit": Code(cause="exactly one of {options} is needed"),
     "rare_needs_reduced": Code(cause="rare events need the reduced model", remedy="set model = 'reduced'"),
     "rare_run_failed": Code(
-        what="{outcome}", cause="a run of the search for the design point failed: {error}", remedy="use {remedy_option}",
+        what="{outcome}", cause="a run of the search for the design point failed: {error}",
+        remedy="use {remedy_option}",
     ),
     "rare_no_value": Code(
         what="{outcome}", cause="it has no value in a run of the search for the design point",

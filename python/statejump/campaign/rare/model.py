@@ -31,8 +31,8 @@ def items_of(recipe: Recipe) -> list[Distribution]:
 
 @dataclass(frozen=True, kw_only=True)
 class Shifted(Recipe):
-    """Samples around a centre in the space of standard normal variates. A sample depends only on the centre, the seed and
-    its number.
+    """Samples around a centre in the space of standard normal variates. A sample depends only on the centre, the seed
+    and its number.
 
     :param centre: one variate per random variable
     """
@@ -99,7 +99,7 @@ class Model:
         return Shifted(**given, centre=tuple(float(one) for one in centre))
 
     def margin(self, recipe: Shifted, index: int = -1) -> float:
-        """Run a sample, or the centre of the recipe, and return its margin; NaN if the sample failed or has no value."""
+        """Run a sample, or the centre, and return its margin; NaN if the sample failed or has no value."""
         sample = run_sample(recipe, index)
         self.runs += 1
         self.on_progress(min(1.0, self.runs / self.expected))

@@ -91,7 +91,8 @@ class Rare:
             lines.append(f"warning: {self.failed} run(s) failed; the interval counts them once within and once beyond "
                          "the limit")
         if self.without_value:
-            lines.append(f"note: {self.without_value} run(s) have no value of the outcome, they count as within the limit")
+            lines.append(f"note: {self.without_value} run(s) have no value of the outcome; they count as within the "
+                         "limit")
         return lines
 
     def write(self, folder: Path) -> list[Path]:
