@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from math import isclose
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from conftest import Outcome
 import statejump as sj
 from statejump.campaign.rare import design_point, model
 from statejump.campaign.sampling import Distribution
+from statejump.campaign.work import Sample
 from statejump.core import libraries
 
 pytest.importorskip("openturns")
@@ -70,6 +71,17 @@ def test_form_is_refused_at_the_tent() -> None:
     assert refused(tent, vary, above=5.8e-4) == "rare_tent"
 
 
+@pytest.mark.parametrize(("margin", "code"), [
+    (lambda u: u[0] - 3 - 0.3 * abs(u[1] - 0.2), "rare_kink"),
+    (lambda u: (u[0] ** 2 + 0.2 * u[0] - 9) / 9, "rare_not_unique"),
+])
+def test_form_is_refused_at_a_kink_and_at_two_design_points(
+    margin: Callable[[Sequence[float]], float], code: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(model.Model, "at", lambda self, variates: margin(variates))
+    assert refused(sj.load("table1"), {**FRICTION, **AREA}, above=1.0) == code
+
+
 def test_form_is_refused_where_the_unchanged_case_or_no_case_is_beyond_the_limit() -> None:
     assert refused(sj.load("table1"), FRICTION, above=1e-5) == "rare_frequent"
     assert refused(sj.load("table1"), AREA, above=1e-3) == "rare_no_design_point"
@@ -111,7 +123,7 @@ def test_failed_samples_widen_the_interval(monkeypatch: pytest.MonkeyPatch) -> N
     original = model.run_sample
 
     def failing_often(recipe: model.Shifted, index: int) -> Any:
-        return model.Sample(index, None, "no equilibrium") if index % 10 == 1 else original(recipe, index)
+        return Sample(index, None, "no equilibrium") if index % 10 == 1 else original(recipe, index)
 
     monkeypatch.setattr(model, "run_sample", failing_often)
     found = sj.rare(sj.load("table1"), VARY, outcome="state_jump_m", above=LIMIT_M)

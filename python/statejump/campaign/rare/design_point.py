@@ -18,6 +18,7 @@ CONVERGED = 1e-2
 MOST_RUNS = 2000
 SIDE = 0.1  # distance of the points on both sides of the design point [standard deviations]
 KINK = 0.25  # difference of the gradients on both sides, relative to their mean
+OPPOSITE = 1.15  # distance of the opposite point that is checked, in distances of the design point
 BEYOND = (0.25, 0.5, 1.0)  # distances beyond the design point, in units of the decay length of the density
 
 
@@ -84,7 +85,7 @@ def _check(model: Model, point: Sequence[float]) -> None:
         distance = decay / max(beta, 1.0)
         if not model.at(centre * (1 + distance / beta)) > 0:
             raise refused(model, "rare_tent", deviations=distance)
-    if model.at(-centre) > 0:
+    if model.at(-OPPOSITE * centre) > 0:
         raise refused(model, "rare_not_unique")
     here = model.at(point)
     sides = [np.array([sign * (model.at(centre + sign * SIDE * step) - here) for step in np.eye(len(centre))])

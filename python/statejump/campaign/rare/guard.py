@@ -14,7 +14,7 @@ WITHIN = -1.0  # margin that OpenTURNS gets after the first exception, and of sa
 
 def refused(model: Model, code: str, **details: Any) -> StatejumpError:
     """Return the error of an event whose probability cannot be computed in this way."""
-    with_remedy = {} if code in ("rare_frequent", "rare_not_reached", "rare_failed_samples") else {
+    with_remedy: dict[str, Any] = {} if code in ("rare_frequent", "rare_not_reached", "rare_failed_samples") else {
         "remedy_option": "method 'subset' (--method subset)"}
     return StatejumpError(code=code, outcome=str(model.event), **with_remedy, **details)
 

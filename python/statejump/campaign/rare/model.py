@@ -2,7 +2,7 @@
 """The outcome of a campaign as a function of independent standard normal variates."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from math import isnan, nan
 from typing import Any
@@ -45,7 +45,7 @@ class Shifted(Recipe):
 
     def data(self, index: int) -> dict[str, Any]:
         """Return the case file of sample ``index``; of the centre itself for -1."""
-        variates = self.centre if index < 0 else self.point(index)
+        variates = np.array(self.centre) if index < 0 else self.point(index)
         return filled(self.case_data, [(key, item.at(float(variate))) for item, variate in zip(items_of(self), variates)
                                        for key in item.keys])
 
@@ -110,7 +110,7 @@ class Model:
         self.without_value += isnan(found)
         return found
 
-    def at(self, variates: Sequence[float]) -> float:
+    def at(self, variates: Iterable[float]) -> float:
         """Return the margin at a point. A point is run once."""
         place = tuple(float(one) for one in variates)
         if place not in self.known:
