@@ -66,7 +66,7 @@ def given() -> Iterator[tuple[str, str, set[str], bool]]:
 CLASSES = {name for name, found in vars(errors).items()
            if isinstance(found, type) and issubclass(found, errors.StatejumpError)}
 # Functions that make an error from the code in their second argument.
-HELPERS = {"fail", "refuse", "refused", "_unusable"}
+HELPERS = {"fail", "refuse", "_unusable"}
 # Classes with a single code.
 OF_ONE_CODE = {"MissingKey", "TolerancesMissed", "Interrupted"}
 GIVEN = list(given())
