@@ -28,8 +28,8 @@ math(EXPR _next_minor "${Python3_VERSION_MINOR} + 1")
 list(APPEND _depends "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}~)"
                      "python3 (<< ${Python3_VERSION_MAJOR}.${_next_minor})")
 list(JOIN _depends ", " CPACK_DEBIAN_PACKAGE_DEPENDS)
-# For statejump laws build.
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, libeigen3-dev, libboost-dev")
+# For statejump laws build; OpenTURNS for statejump rare.
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, libeigen3-dev, libboost-dev, python3-openturns")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # libyade.so has no version in its name; that dependency is the one on yade.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${YADE_LIBRARY_DIR}")

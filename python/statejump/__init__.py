@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from statejump.api import compare as compare, load as load, modes as modes, statics as statics, worst as worst
     from statejump.bores.measure import bore as bore
     from statejump.campaign.calls import montecarlo as montecarlo, sweep as sweep
+    from statejump.campaign.rare import rare as rare
     from statejump.core.case import Case as Case
     from statejump.core.comparison import Comparison as Comparison, Quantity as Quantity
     from statejump.core.errors import StatejumpError as StatejumpError
@@ -43,6 +44,7 @@ _PLACES = {
     **dict.fromkeys(("compare", "load", "modes", "statics", "worst"), "statejump.api"),
     "bore": "statejump.bores.measure",
     **dict.fromkeys(("montecarlo", "sweep"), "statejump.campaign.calls"),
+    "rare": "statejump.campaign.rare",
     "identify": "statejump.identification.result",
     "read": "statejump.results.read",
     "Case": "statejump.core.case",

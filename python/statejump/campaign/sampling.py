@@ -30,7 +30,14 @@ class Distribution:
             return float(self.low + (self.high - self.low) * generator.random())
         if self.distribution == "truncated_normal":
             return self._truncated(generator.random())
-        variate = generator.standard_normal()
+        return self.at(generator.standard_normal())
+
+    def at(self, variate: float) -> float:
+        """Return the value at a variate of the standard normal distribution, of the same cumulative probability."""
+        if self.distribution == "uniform":
+            return float(self.low + (self.high - self.low) * ndtr(variate))
+        if self.distribution == "truncated_normal":
+            return self._truncated(float(ndtr(variate)))
         if self.distribution == "normal":
             return float(self.mean + self.standard_deviation * variate)
         spread = sqrt(log1p((self.standard_deviation / self.mean) ** 2))

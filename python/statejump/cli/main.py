@@ -50,6 +50,7 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "Many cases": {
         "montecarlo": ("campaign:montecarlo_command", "Many samples of a case whose parameters are random."),
+        "rare": ("rare:rare_command", "Small probability that an outcome is beyond a limit."),
         "sweep": ("campaign:sweep_command", "A case on a grid of its parameters."),
     },
     "Results and files": {

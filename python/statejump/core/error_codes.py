@@ -387,6 +387,54 @@ CODES: dict[str, Code] = {
     ),
     "campaign_without_vary": Code(cause="at least one table says what varies"),
     "sweep_with_distribution": Code(beside="in a sweep", cause="only 'statejump montecarlo' draws samples"),
+    # Rare events
+    "openturns_missing": Code(
+        what="OpenTURNS", cause="the library is not installed", remedy="install the package python3-openturns",
+    ),
+    "rare_needs_limit": Code(cause="exactly one of {options} is needed"),
+    "rare_needs_reduced": Code(cause="rare events need the reduced model", remedy="set model = 'reduced'"),
+    "rare_run_failed": Code(
+        what="{outcome}", cause="a run of the search for the design point failed: {error}",
+        remedy="use {remedy_option}",
+    ),
+    "rare_no_value": Code(
+        what="{outcome}", cause="it has no value in a run of the search for the design point",
+        remedy="use {remedy_option}",
+    ),
+    "rare_no_design_point": Code(
+        what="{outcome}", cause="FORM found no design point within {runs} runs: {error}", remedy="use {remedy_option}",
+    ),
+    "rare_frequent": Code(
+        what="{outcome}", cause="the unchanged case is beyond the limit already, the event is not rare",
+        remedy="use 'statejump montecarlo'",
+    ),
+    "rare_not_unique": Code(
+        what="{outcome}", cause="FORM is invalid, the opposite point of the design point is beyond the limit too",
+        remedy="use {remedy_option}",
+    ),
+    "rare_kink": Code(
+        what="{outcome}",
+        cause="FORM is invalid at a kink, the gradients on both sides of the design point differ by {percent:.0f} %",
+        remedy="use {remedy_option}",
+    ),
+    "rare_tent": Code(
+        what="{outcome}",
+        cause="FORM is invalid at a tent, {deviations:.2g} standard deviations beyond the design point the outcome "
+              "is within the limit again",
+        remedy="use {remedy_option}",
+    ),
+    "rare_not_sampled": Code(
+        what="{outcome}",
+        cause="the coefficient of variation of importance sampling is {variation:.2g} after {runs} runs",
+        remedy="use {remedy_option} or more runs",
+    ),
+    "rare_not_reached": Code(
+        what="{outcome}", cause="no sample of {runs} runs is beyond the limit", remedy="use more runs",
+    ),
+    "rare_failed_samples": Code(
+        what="{outcome}", cause="{failed} of {runs} runs failed, the first with: {error}",
+        remedy="narrow the distributions",
+    ),
     "output_axis": Code(cause="the axis must be one of {known}"),
     "bad_output_name": Code(cause="must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"),
     "output_how_unknown": Code(cause="HOW must be one of {hows}"),

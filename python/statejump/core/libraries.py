@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
+from statejump.core.errors import StatejumpError
+
 
 def frame(data: Any, columns: Sequence[str] | None = None) -> Any:
     """Return data as a table of pandas."""
@@ -34,3 +36,11 @@ def sparse() -> Any:
 def scipy(part: str) -> Any:
     """Return a part of SciPy, such as ``linalg`` or ``sparse.linalg``."""
     return import_module(f"scipy.{part}")  # 0.1 s
+
+
+def openturns() -> Any:
+    """Return OpenTURNS, for rare events. :raises StatejumpError: it is not installed"""
+    try:
+        return import_module("openturns")  # 1.7 s
+    except ImportError:
+        raise StatejumpError(code="openturns_missing") from None
