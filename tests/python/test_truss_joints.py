@@ -34,6 +34,9 @@ def test_columns_are_outputs_of_the_engine(joint: object) -> None:
 
 @pytest.mark.parametrize("joint", BY_ONE_FILE, ids=lambda joint: joint.section)
 def test_a_type_without_contacts_is_one_file(joint: object) -> None:
+    names = f'"{joint.section}"', f"[[{joint.section}]]", f".{joint.section} import", f"'{joint.section}'"
     telling = {path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.py")
-               if joint.section in path.read_text(encoding="utf-8")}
+               if any(name in path.read_text(encoding="utf-8") for name in names)}
+    if joint.section == "pad":  # also the part of a slider on the floor of the DEM
+        telling -= {"joints/slider.py"}
     assert telling == {f"joints/{joint.section}.py", "joints/__init__.py"}

@@ -16,6 +16,7 @@ from failures import failing
 from statejump.kinds.truss.generate.document import document, finished, node
 from statejump.kinds.truss.solve import solve
 from statejump.kinds.truss.worst.histories import histories
+from statejump.kinds.truss.worst.search import INCREMENTS, quick_path
 
 BAR: dict[str, Any] = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-5, "thermal_expansion_per_K": 2e-5,
                        "density_kg_per_m3": 2700.0}
@@ -140,3 +141,13 @@ def test_command_refuses_in_one_sentence(statejump: Any) -> None:
     assert done.status == 2 and done.failure.code == "bounds_bad_range" and "--range" in str(done.failure)
     done = statejump("worst", "table1", "--range", "-1:1")
     assert done.status == 2
+
+
+def test_histories_in_which_many_joints_change_together_have_a_path() -> None:
+    """Ten blocks between members that all go from one end of the range to the other: with given friction limits a path
+    always exists, also where steps without located events do not find it."""
+    found = histories(sj.load("trusses/chain_10"), -80.0, 60.0, [])
+    for seed in (2, 4):
+        rng = np.random.default_rng(seed)
+        corners = np.where(rng.random((3, 2, len(found.variables))) < 0.5, -80.0, 60.0)
+        assert quick_path(found.truss(corners), INCREMENTS).complete

@@ -730,7 +730,7 @@ CODES: dict[str, Code] = {
     "worst_bad_group": Code(cause="no member that expands and is in no earlier group has such a name"),
     "worst_without_path": Code(
         what="no history within the range has a quasi-static path",
-        cause="{cause}",
+        cause="{first}",
         remedy="reduce the range",
     ),
     "no_moving_mass": Code(

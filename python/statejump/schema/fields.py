@@ -132,7 +132,8 @@ def texts(
     default: Any, source: str, names: Names | None = None, *, pattern: str | Callable[[], str] | None = None
 ) -> Any:
     """Declare a list of texts, optionally restricted to given names; ``pattern`` as for :func:`text`, for editors."""
-    return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names), pattern=pattern))
+    return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names), pattern=pattern,
+                              optional=default is None))
 
 
 def section(

@@ -200,7 +200,7 @@ TEST(Constraints, WrongTermsAndJointsThatHoldTheSameAreRefused) {
   Model model = facing_bars();
   model.constraints = {{"empty", {}}};
   EXPECT_THROW(model.validate(), std::invalid_argument);
-  model.constraints = {tie("none", 1, x, 7, x)};
+  model.constraints = {tie("none", 1, x, 2 * static_cast<int>(model.nodes.size()), x)};
   EXPECT_THROW(model.validate(), std::invalid_argument);
   model.constraints = {tie("small", 1, x, 2, 1e-10 * x)};
   EXPECT_THROW(model.validate(), std::invalid_argument);

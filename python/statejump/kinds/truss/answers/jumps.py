@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from statejump.core.engine_failures import EngineFailed
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.scales import scales
@@ -15,8 +16,19 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 def quick_path(truss: ResolvedTruss, increments_per_branch: int = 50, on_progress: OnProgress = lambda share: None,
                **more: Any) -> TrussPath:
-    """Return the path with only the events located that affect the state; ends of cycles are unchanged."""
-    return whole_path(truss, on_progress, increments_per_branch=increments_per_branch, locate_events=False, **more)
+    """Return the path with only the events located that affect the state; ends of cycles are unchanged.
+
+    Where the solver finds no path that way, because many joints change their status within one increment, all events
+    are located.
+    """
+    def found(locate_events: bool) -> TrussPath:
+        return whole_path(truss, on_progress, increments_per_branch=increments_per_branch, locate_events=locate_events,
+                          **more)
+
+    try:
+        return found(locate_events=False)
+    except EngineFailed:
+        return found(locate_events=True)
 
 
 def node_jumps(found: TrussPath) -> np.ndarray:

@@ -51,8 +51,7 @@ def take_followers(deck: Deck) -> None:
     bent = deck.bent()
     for one in waiting:
         for name in one.unsupported:
-            expands = name == "ALPHA"
-            deck.refuse(f"{one.card}.{name}", "mean_expands" if expands else "other_dependent_displacements", one.line)
+            deck.refuse(f"{one.card}.{name}", "mean_expands", one.line)
         if not all(node in deck.nodes for node in one.nodes()):
             deck.refuse(one.card, "node_on_rigid_arm", one.line)
         elif one.node in turned and not one.turns() and one.node not in bent:

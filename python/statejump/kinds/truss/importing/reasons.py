@@ -24,7 +24,6 @@ REASONS: dict[str, str] = {
     "mean_expands": "thermal expansion of a mean",
     "mean_undetermined": "its nodes do not determine the motion of the node that follows, as nodes on one line",
     "mean_weighting": "weights that depend on the distance, or rotations of the nodes",
-    "other_dependent_displacements": "other displacements are dependent than those of its reference node",
     "lateral_load": "it acts across a pin-jointed bar",
     "load_on_released_beam": "its beam has a released end or an offset",
     "load_on_tapered_beam": "the section of its beam varies",

@@ -148,8 +148,8 @@ def worst(case: TrussCase, range_K: str | tuple[float, float], output: Sequence[
     limits, reason, outputs = _bounded(case, known, [output] if isinstance(output, str) else output)
     search = Search(known, outputs, cycles, paths, np.random.default_rng(seed), on_progress)
     search.run(_given(known, limits, outputs, cycles))
-    if not search.best[outputs[0].name, JUMP].corners_K is not None:
-        raise StatejumpError(code="worst_without_path", place=case.name, case=case.name, cause=search.failed[0])
+    if search.best[outputs[0].name, JUMP].corners_K is None:
+        raise StatejumpError(code="worst_without_path", place=case.name, case=case.name, first=search.failed[0])
     facts = [reason] if reason else [limits.guarantee] if limits else []
     if search.failed:
         facts.append(f"{len(search.failed)} of {search.solved} histories have no path, for example: {search.failed[0]}")

@@ -82,8 +82,7 @@ def _others(reader: Reader, card: Card) -> tuple[list[tuple[str, float, np.ndarr
     unsupported: list[str] = []
     texts = [text for text in card.fields[4:] if text]
     while texts:
-        if texts[0].upper() == "UM":
-            unsupported.append("UM")
+        if texts[0].upper() == "UM":  # chooses which displacements are dependent, not how they are related
             texts = texts[next((at for at, text in enumerate(texts) if text.upper() == "ALPHA"), len(texts)):]
             continue
         if texts[0].upper() == "ALPHA":

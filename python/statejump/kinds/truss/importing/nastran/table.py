@@ -86,8 +86,8 @@ CARDS: dict[str, Card] = table(
     used("RBE2", BODY, "EID GN CM GMi ALPHA", refused={"ALPHA": EXPANDS}, own=True),
     used("RBE3", "`[[mean]]`; constraints where some Ci are not 123; nothing where nothing acts on its node REFGRID",
          "EID - REFGRID REFC WTi Ci Gi,j UM GMi CMi ALPHA", own=True,
-         refused={"UM GMi CMi": "other dependent displacements, where something acts on REFGRID",
-                  "ALPHA": "thermal expansion of a mean, where something acts on REFGRID"}),
+         idle={"UM GMi CMi": "which displacements are dependent: the solver chooses"},
+         refused={"ALPHA": "thermal expansion of a mean, where something acts on REFGRID"}),
     used("RROD", "constraint along the line of its nodes", "EID GA GB CMA CMB ALPHA",
          idle={"CMA CMB": "which displacement is dependent: the solver chooses"}, refused={"ALPHA": EXPANDS}),
     used("MPC", "support, one node of two at one place, loads of a node at which no bar ends, or constraint; "
