@@ -81,12 +81,17 @@ class Bodies:
         return float(abs(self.expansion_factor[index]) * (shapes * changes).sum() / radius(content.node_positions_m))
 
     @property
-    def mass_kg(self) -> np.ndarray:
-        """Mass of each body (k,) [kg]. :raises MissingKey: the file of a body has no mass"""
+    def weighed(self) -> tuple[Placed, ...]:
+        """The bodies in the axes of the truss. :raises MissingKey: the file of a body has no mass"""
         for name, content in zip(self.names, self.contents):
             if content.mass is None:
                 raise MissingKey("mass", code="mass_of_condensed_body_missing", item=f"body {name!r}")
-        return np.array([body.mass_kg for body in self.placed])
+        return self.placed
+
+    @property
+    def mass_kg(self) -> np.ndarray:
+        """Mass of each body (k,) [kg]. :raises MissingKey: the file of a body has no mass"""
+        return np.array([body.mass_kg for body in self.weighed])
 
 
 class BodyType(ElementType[Body, Bodies]):
@@ -217,11 +222,10 @@ class BodyType(ElementType[Body, Bodies]):
 
     def _weights(self, elements: Bodies, gravity: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
         forces, moments = np.zeros((nodes, 3)), np.zeros((nodes, 3))
-        if len(elements.names) and elements.mass_kg is not None:
-            for at, body in zip(elements.nodes, elements.placed):
-                force, moment = body.weight(gravity)
-                np.add.at(forces, at, force)
-                np.add.at(moments, at, moment)
+        for at, body in zip(elements.nodes, elements.weighed):
+            force, moment = body.weight(gravity)
+            np.add.at(forces, at, force)
+            np.add.at(moments, at, moment)
         return forces, moments
 
     def run_notes(self, truss: ResolvedTruss, elements: Bodies, columns: Mapping[str, np.ndarray]) -> tuple[str, ...]:
