@@ -2,6 +2,7 @@
 """Condensed bodies: arrays, files, what reading measures, and the cause that a refusal names."""
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from conftest import BUILT
 from failures import failing, note
 from frames import EXPANSION, NAMES, POSITIONS_M, expanded, mass, stiffness
 import statejump as sj
@@ -237,5 +239,6 @@ def test_modes_follow_the_nodes() -> None:
 def test_kinds_may_import_bodies() -> None:
     code = ("import sys; import statejump.bodies.body, statejump.bodies.files; "
             "print(sorted(name for name in sys.modules if name.startswith('statejump.kinds')))")
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(BUILT)},
+                          capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
