@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dof_map.hpp"
+#include "hermite.hpp"
 #include "parts.hpp"
 #include "way.hpp"
 
@@ -44,6 +45,20 @@ struct ThermalStep {
   const DofMap& dofs;
   const std::vector<Quadrature>& quadratures;  ///< Of every program.
 
+  /// Displacement of a site at a fraction of the step [m]. A straight way is evaluated at its ends
+  /// only.
+  Vector3d displacement(int site, double share) const {
+    if (way.is_straight()) return dofs.displacement(site, share == 0.0 ? way.from : way.to);
+    const Vector3d from = dofs.displacement(site, way.from);
+    const Vector3d to = dofs.displacement(site, way.to);
+    const Vector3d from_rate = way.step() * dofs.displacement(site, *way.from_rate);
+    const Vector3d to_rate = way.step() * dofs.displacement(site, *way.to_rate);
+    Vector3d made;
+    for (Eigen::Index x = 0; x < 3; ++x) {
+      made[x] = Cubic{from[x], to[x], from_rate[x], to_rate[x]}.at(share);
+    }
+    return made;
+  }
   Vector3d moved_between(int from, int to, const VectorXd& z) const {
     return dofs.displacement(to, z) - dofs.displacement(from, z);
   }

@@ -86,11 +86,18 @@ def scales(positions_m: Matrix, freedoms: NDArray[np.int64], stiffness: Matrix) 
     return np.concatenate([found, np.sqrt(largest / modal)])
 
 
-def _basis(positions_m: Matrix, freedoms: NDArray[np.int64], scale: Matrix) -> Matrix:
+def scaled_rigid_motions(positions_m: Matrix, freedoms: NDArray[np.int64], scale: Matrix) -> Matrix:
     """Return an orthonormal basis of the scaled rigid motions."""
     motions = rigid_motions(positions_m, freedoms, len(scale) - int(freedoms.sum()), positions_m.mean(axis=0))
     left, size, _ = np.linalg.svd(motions / scale[:, None] * _units(positions_m), full_matrices=False)
     return np.asarray(left[:, size > 1e-9 * size.max(initial=0.0)])
+
+
+def without_rigid_forces(scaled: Matrix, basis: Matrix) -> Matrix:
+    """Return a scaled stiffness, symmetric and with the motions of a basis projected out."""
+    scaled = scaled - basis @ (basis.T @ scaled)
+    scaled = scaled - (scaled @ basis) @ basis.T
+    return np.asarray((scaled + scaled.T) / 2)
 
 
 def _units(positions_m: Matrix) -> Matrix:
@@ -108,7 +115,8 @@ def checked_stiffness(
     scaled = given * np.outer(scale, scale)
     largest = float(np.abs(scaled).max(initial=0.0))
     if largest == 0:
-        return given, Measured(0.0, 0.0, 0.0, None, len(given) - _basis(positions_m, freedoms, scale).shape[1])
+        rigid = scaled_rigid_motions(positions_m, freedoms, scale).shape[1]
+        return given, Measured(0.0, 0.0, 0.0, None, len(given) - rigid)
     asymmetry = float(np.abs(scaled - scaled.T).max()) / largest
     if asymmetry > REFUSED:
         one = not np.triu(scaled, 1).any() or not np.tril(scaled, -1).any()
@@ -119,10 +127,8 @@ def checked_stiffness(
     if rigid_error > REFUSED:
         code, details = cause_of(scaled / np.outer(scale, scale), names, positions_m, freedoms)
         raise StatejumpError(code=code, error=rigid_error, **details)
-    basis = _basis(positions_m, freedoms, scale)
-    scaled -= basis @ (basis.T @ scaled)
-    scaled -= (scaled @ basis) @ basis.T
-    scaled = (scaled + scaled.T) / 2
+    basis = scaled_rigid_motions(positions_m, freedoms, scale)
+    scaled = without_rigid_forces(scaled, basis)
     measured = _definite(scaled, basis.shape[1], asymmetry, rigid_error, largest)
     return scaled / np.outer(scale, scale), attrs.evolve(measured, notes=_notes(positions_m, measured))
 
@@ -158,7 +164,7 @@ def as_loads(
     """
     modes = loads.shape[1] - int(freedoms.sum())
     scale = scales(positions_m, freedoms, np.eye(loads.shape[1]))
-    basis = _basis(positions_m, freedoms, scale)
+    basis = scaled_rigid_motions(positions_m, freedoms, scale)
     scaled = loads * scale
     size = np.abs(scaled[:, :loads.shape[1] - modes]).max(axis=1, initial=0.0)
     resultant = np.abs(scaled @ basis).max(axis=1, initial=0.0)

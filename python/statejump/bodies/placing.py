@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from statejump.bodies.body import CondensedBody, Points
-from statejump.bodies.checks import rigid_motions, scales
+from statejump.bodies.checks import scaled_rigid_motions, scales, without_rigid_forces
 from statejump.core.errors import NotAllowed
 
 Matrix = NDArray[np.float64]
@@ -61,16 +61,14 @@ class Placed:
         along = self._translation(np.array([1.0, 0.0, 0.0]))
         return float(along @ self.mass @ along)
 
-    def weight(self, gravity_m_per_s2: Matrix) -> tuple[Matrix, Matrix]:
-        """Return forces (n, 3) [N] and moments (n, 3) [N m] of gravity on the nodes. The file must contain a mass."""
+    def weight(self, gravity_m_per_s2: Matrix) -> Matrix:
+        """Return forces [N], then moments [N m], of gravity on the nodes (n, 6). The file must contain a mass."""
         assert self.mass is not None
         loads = self.mass @ self._translation(gravity_m_per_s2)
-        forces, moments = np.zeros((len(self.freedoms), 3)), np.zeros((len(self.freedoms), 3))
+        found = np.zeros((len(self.freedoms), 6))
         for index, (start, dofs) in enumerate(zip(self.starts, self.freedoms)):
-            forces[index] = loads[start:start + 3]
-            if dofs == 6:
-                moments[index] = loads[start + 3:start + 6]
-        return forces, moments
+            found[index, :dofs] = loads[start:start + dofs]
+        return found
 
     def positions_of(self, points_m: Matrix) -> Matrix:
         """Return positions (k, 3) in the structure of points (k, 3) in the frame of the body [m]."""
@@ -152,11 +150,16 @@ def placed(body: CondensedBody, nodes_m: Matrix, origin_m: Matrix, axes: Matrix)
     for start in range(0, count, 3):
         turn[start:start + 3, start:start + 3] = axes
     own = _condensed(body.stiffness, count)
-    stiffness = _without_rigid_forces(turn @ own @ turn.T, nodes_m, freedoms)
+    turned = turn @ own @ turn.T
+    scale = scales(nodes_m, freedoms, turned)
+    basis = scaled_rigid_motions(nodes_m, freedoms, scale)
+    scaled = turned * np.outer(scale, scale)
+    for _ in range(2):  # the second time against the rounding of the first
+        scaled = without_rigid_forces(scaled, basis)
     positions = origin_m + body.node_positions_m @ axes.T
     return Placed(
         positions_m=positions, freedoms=freedoms, offset_m=nodes_m - positions, origin_m=origin_m, axes=axes,
-        stiffness=stiffness, free_shapes=body.free_shapes[:, :count] @ turn.T,
+        stiffness=scaled / np.outer(scale, scale), free_shapes=body.free_shapes[:, :count] @ turn.T,
         mass=None if body.mass is None else turn @ body.mass[:count, :count] @ turn.T)
 
 
@@ -166,17 +169,3 @@ def _condensed(matrix: Matrix, count: int) -> Matrix:
     if not coupling.any():
         return matrix[:count, :count]
     return np.asarray(matrix[:count, :count] - coupling @ np.linalg.solve(matrix[count:, count:], coupling.T))
-
-
-def _without_rigid_forces(stiffness: Matrix, nodes_m: Matrix, freedoms: NDArray[np.int64]) -> Matrix:
-    """Return the symmetric stiffness with the rigid motions about the structure's nodes projected out."""
-    scale = scales(nodes_m, freedoms, stiffness)
-    motions = rigid_motions(nodes_m, freedoms, about_m=nodes_m.mean(axis=0)) / scale[:, None]
-    sizes = np.linalg.norm(motions, axis=0)
-    left, size_of, _ = np.linalg.svd(motions[:, sizes > 0] / sizes[sizes > 0], full_matrices=False)
-    basis = left[:, size_of > 1e-9 * size_of.max()]
-    scaled = stiffness * np.outer(scale, scale)
-    for _ in range(2):  # the second time against the rounding of the first
-        scaled = scaled - basis @ (basis.T @ scaled)
-        scaled = scaled - (scaled @ basis) @ basis.T
-    return np.asarray(0.5 * (scaled + scaled.T) / np.outer(scale, scale))

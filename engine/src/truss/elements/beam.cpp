@@ -11,7 +11,6 @@
 #include "statejump/truss/model.hpp"
 #include "truss/elements/axial.hpp"
 #include "truss/elements/writer.hpp"
-#include "truss/hermite.hpp"
 #include "truss/thermal_step.hpp"
 
 namespace statejump::truss {
@@ -421,27 +420,6 @@ double Beam::thermal_work(const Frame& frame, const detail::ThermalStep& step) c
   const double expansion = stress_free_length * thermal_expansion * temperature_fraction;
   const std::array<double, 2> bend = curvature_per_kelvin(*this, frame);
   if (expansion == 0.0 && bend[0] == 0.0 && bend[1] == 0.0) return 0.0;
-  const detail::Way& way = step.way;
-  const auto ends = [&](const Eigen::VectorXd& z) {
-    return moved_of(frame, [&](int site) { return step.dofs.displacement(site, z); });
-  };
-  const Moved from = ends(way.from);
-  const Moved to = ends(way.to);
-  const bool straight = way.is_straight();
-  const Moved from_rate = straight ? Moved{} : ends(*way.from_rate);
-  const Moved to_rate = straight ? Moved{} : ends(*way.to_rate);
-  const auto between = [&](auto member, std::size_t end, double share) {
-    Vector3d made;
-    for (Eigen::Index x = 0; x < 3; ++x) {
-      const auto of = [&](const Moved& one) { return (one.*member)[end][x]; };
-      // A straight way is evaluated at its ends only.
-      made[x] = straight ? (share == 0.0 ? of(from) : of(to))
-                         : detail::Cubic{of(from), of(to), way.step() * of(from_rate),
-                                         way.step() * of(to_rate)}
-                               .at(share);
-    }
-    return made;
-  };
   const detail::Quadrature& mean = step.quadratures[index(program)];
   const detail::Quadrature& gradient = step.quadratures[index(gradient_program)];
   const Vector3d drawn = step.drawn[index(second)] - step.drawn[index(first)];
@@ -449,11 +427,8 @@ double Beam::thermal_work(const Frame& frame, const detail::ThermalStep& step) c
   for (std::size_t k = 0; k < mean.count; ++k) {
     const auto& point = mean.points[k];
     const auto& across = gradient.points[k];
-    Moved moved;
-    for (std::size_t end = 0; end < 2; ++end) {
-      moved.places[end] = between(&Moved::places, end, point.share);
-      moved.rotations[end] = between(&Moved::rotations, end, point.share);
-    }
+    const Moved moved =
+        moved_of(frame, [&](int site) { return step.displacement(site, point.share); });
     const BeamStep at =
         step_at(*this, frame, drawn, moved, {point.temperature_change, across.temperature_change});
     work += expansion * point.warmed * at.by_length();

@@ -12,7 +12,6 @@
 #include "statejump/kernel/rotation.hpp"
 #include "statejump/truss/model.hpp"
 #include "truss/elements/writer.hpp"
-#include "truss/hermite.hpp"
 #include "truss/thermal_step.hpp"
 
 namespace statejump::truss {
@@ -345,13 +344,14 @@ void write_forces(const CondensedBody::Frame& frame, const Moved& moved, const F
   }
 }
 
-/// Calls `use(site, row)` for every site of the body and its first freedom.
+/// Calls `use(site, row, arm)` for every site of the body, its first freedom and, for a rotation,
+/// Node::arm [m]; 0: a displacement.
 template <class Use>
 void each_site(const CondensedBody::Frame& frame, Use&& use) {
   for (int i = 0; i < count_of(frame); ++i) {
-    use(frame.nodes[index(i)], frame.rows[index(i)]);
+    use(frame.nodes[index(i)], frame.rows[index(i)], 0.0);
     const int site = frame.turning[index(i)];
-    if (site >= 0) use(site, frame.rows[index(i)] + 3);
+    if (site >= 0) use(site, frame.rows[index(i)] + 3, frame.arms[index(i)]);
   }
 }
 
@@ -436,11 +436,9 @@ CondensedBody::Frame CondensedBody::frame(const Model& model) const {
 ElementScale CondensedBody::scale(const Frame& frame, const std::vector<Vector3d>&) const {
   ElementScale made;
   const double size = std::sqrt(frame.squared_radius);
-  each_site(frame, [&](int site, int row) {
+  each_site(frame, [&](int, int row, double arm) {
     const double largest = stiffness.diagonal().segment<3>(row).maxCoeff();
-    const bool turns =
-        std::find(frame.turning.begin(), frame.turning.end(), site) != frame.turning.end();
-    if (turns) {
+    if (arm > 0.0) {
       made.by_rotation = std::max(made.by_rotation, largest / size);
     } else {
       made.stiffness = std::max(made.stiffness, largest);
@@ -448,9 +446,8 @@ ElementScale CondensedBody::scale(const Frame& frame, const std::vector<Vector3d
   });
   for (const ThermalPattern& pattern : patterns) {
     double strain = 0.0;
-    each_site(frame, [&](int site, int row) {
-      if (std::find(frame.turning.begin(), frame.turning.end(), site) != frame.turning.end())
-        return;
+    each_site(frame, [&](int, int row, double arm) {
+      if (arm > 0.0) return;
       strain = std::max(strain, pattern.free_shape.segment<3>(row).norm() / size);
     });
     strain *= std::abs(pattern.fraction);
@@ -480,8 +477,8 @@ void CondensedBody::evaluate(const Frame& frame, const ElementState& state,
         (frame.arms[index(i)] * frame.arms[index(i)]);
   }
   hessian = (0.5 * (hessian + hessian.transpose())).eval();
-  each_site(frame, [&](int site, int row) {
-    each_site(frame, [&](int other, int column) {
+  each_site(frame, [&](int site, int row, double) {
+    each_site(frame, [&](int other, int column, double) {
       writer.matrix(site, other, hessian.block<3, 3>(row, column));
     });
   });
@@ -530,35 +527,11 @@ void CondensedBody::check_state(const Frame& frame, const ElementState& state) c
 
 double CondensedBody::thermal_work(const Frame& frame, const detail::ThermalStep& step) const {
   if (patterns.empty()) return 0.0;
-  const detail::Way& way = step.way;
-  const auto places_at = [&](const VectorXd& z) {
-    return moved_of(frame, [&](int site) { return step.dofs.displacement(site, z); });
-  };
-  const bool straight = way.is_straight();
-  const Moved from = places_at(way.from);
-  const Moved to = places_at(way.to);
-  const Moved from_rate = straight ? Moved{} : places_at(*way.from_rate);
-  const Moved to_rate = straight ? Moved{} : places_at(*way.to_rate);
-  const auto between = [&](auto member, std::size_t i, double share) {
-    // A straight way is evaluated at its ends only.
-    if (straight) return share == 0.0 ? (from.*member)[i] : (to.*member)[i];
-    Vector3d made;
-    for (Index x = 0; x < 3; ++x) {
-      made[x] = detail::Cubic{(from.*member)[i][x], (to.*member)[i][x],
-                              way.step() * (from_rate.*member)[i][x],
-                              way.step() * (to_rate.*member)[i][x]}
-                    .at(share);
-    }
-    return made;
-  };
   double work = 0.0;
   const detail::Quadrature& first = step.quadratures[index(patterns.front().program)];
   for (std::size_t k = 0; k < first.count; ++k) {
-    Moved moved;
-    for (std::size_t i = 0; i < from.places.size(); ++i) {
-      moved.places.push_back(between(&Moved::places, i, first.points[k].share));
-      moved.rotations.push_back(between(&Moved::rotations, i, first.points[k].share));
-    }
+    const Moved moved =
+        moved_of(frame, [&](int site) { return step.displacement(site, first.points[k].share); });
     const VectorXd inner = stiffness * strained(*this, deformed(frame, moved).q, [&](int program) {
                              return step.quadratures[index(program)].points[k].temperature_change;
                            });
@@ -573,14 +546,10 @@ double CondensedBody::thermal_work(const Frame& frame, const detail::ThermalStep
 void CondensedBody::mass(const Frame& frame, const Inertia&, std::size_t,
                          MatrixWriter& writer) const {
   if (inertia.size() == 0) return;
-  const auto arm_at = [&](int site) {
-    const auto found = std::find(frame.turning.begin(), frame.turning.end(), site);
-    return found == frame.turning.end() ? 1.0
-                                        : frame.arms[index(int(found - frame.turning.begin()))];
-  };
-  each_site(frame, [&](int site, int row) {
-    each_site(frame, [&](int other, int column) {
-      writer.block(site, other, inertia.block<3, 3>(row, column) / (arm_at(site) * arm_at(other)));
+  const auto per = [](double arm) { return arm > 0.0 ? 1.0 / arm : 1.0; };
+  each_site(frame, [&](int site, int row, double arm) {
+    each_site(frame, [&](int other, int column, double other_arm) {
+      writer.block(site, other, inertia.block<3, 3>(row, column) * (per(arm) * per(other_arm)));
     });
   });
 }

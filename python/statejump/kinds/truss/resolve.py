@@ -46,12 +46,11 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     gravity = in_space(case.truss.gravity_m_per_s2, dimension)
     elements = {element.section: element.resolve(element.listed(case), known) for element in ELEMENTS}
     if gravity.any():
-        weights = weights_N(gravity, links.nodes, links.mass_kg, bodies, nodes.mass_kg)
-        moments = np.zeros_like(weights)
+        weights = np.zeros((len(positions), 6))
+        weights[:, :3] = weights_N(gravity, links.nodes, links.mass_kg, bodies, nodes.mass_kg)
         for element in ELEMENTS:
-            weights += element.weights_N(elements[element.section], gravity, len(positions))
-            moments += element.weight_moments_N_m(elements[element.section], gravity, len(positions))
-        nodes = replace(nodes, force_N=nodes.force_N + weights, moment_N_m=nodes.moment_N_m + moments)
+            weights += element.weights(elements[element.section], gravity, len(positions))
+        nodes = replace(nodes, force_N=nodes.force_N + weights[:, :3], moment_N_m=nodes.moment_N_m + weights[:, 3:])
 
     means = resolve_means(case.mean, node_places, positions, dimension)
     reflector = None

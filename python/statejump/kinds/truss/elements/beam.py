@@ -304,10 +304,10 @@ class BeamType(BetweenNodes[Beam, Beams]):
                                  program=truss.program_names[elements.program[index]],
                                  **self.where(elements.names[index]))
 
-    def weights_N(self, elements: Beams, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
-        found = np.zeros((nodes, 3))
+    def weights(self, elements: Beams, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
+        found = np.zeros((nodes, 6))
         for end in elements.nodes.T:  # half at each end
-            np.add.at(found, end, 0.5 * elements.mass_kg[:, None] * gravity_m_per_s2)
+            np.add.at(found[:, :3], end, 0.5 * elements.mass_kg[:, None] * gravity_m_per_s2)
         return found
 
     def preload_N(self, elements: Beams) -> np.ndarray:

@@ -150,7 +150,6 @@ class BodyType(ElementType[Body, Bodies]):
             known_name("nodes", item.nodes, name, nodes, "node", **where)
         if len(set(item.nodes)) < len(item.nodes):
             raise NotAllowed("nodes", item.nodes, code="body_node_repeated", **where)
-        self.check_keys(item)
 
     def resolve(self, items: Sequence[Body], known: References) -> Bodies:
         contents, nodes, bodies, patterns, programs, fractions = [], [], [], [], [], []
@@ -214,19 +213,11 @@ class BodyType(ElementType[Body, Bodies]):
     def preload_N(self, elements: Bodies) -> np.ndarray:
         return np.zeros(len(elements.ends))
 
-    def weights_N(self, elements: Bodies, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
-        return self._weights(elements, gravity_m_per_s2, nodes)[0]
-
-    def weight_moments_N_m(self, elements: Bodies, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
-        return self._weights(elements, gravity_m_per_s2, nodes)[1]
-
-    def _weights(self, elements: Bodies, gravity: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-        forces, moments = np.zeros((nodes, 3)), np.zeros((nodes, 3))
+    def weights(self, elements: Bodies, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
+        found = np.zeros((nodes, 6))
         for at, body in zip(elements.nodes, elements.weighed):
-            force, moment = body.weight(gravity)
-            np.add.at(forces, at, force)
-            np.add.at(moments, at, moment)
-        return forces, moments
+            np.add.at(found, at, body.weight(gravity_m_per_s2))
+        return found
 
     def run_notes(self, truss: ResolvedTruss, elements: Bodies, columns: Mapping[str, np.ndarray]) -> tuple[str, ...]:
         found, ranges_K = [], np.abs(truss.temperature_ranges_K).max(axis=1)

@@ -90,13 +90,9 @@ class ElementType(PartType[ItemType, ArraysType]):
         """Return the arrays for the engine that are not fields of the type's arrays."""
         return {}
 
-    def weights_N(self, elements: ArraysType, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
-        """Return the weights of the elements as loads on the nodes (nodes, 3) [N]."""
-        return np.zeros((nodes, 3))
-
-    def weight_moments_N_m(self, elements: ArraysType, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
-        """Return the moments of the weights on the nodes (nodes, 3) [N m]."""
-        return np.zeros((nodes, 3))
+    def weights(self, elements: ArraysType, gravity_m_per_s2: np.ndarray, nodes: int) -> np.ndarray:
+        """Return the weights of the elements as loads on the nodes (nodes, 6): forces [N], then moments [N m]."""
+        return np.zeros((nodes, 6))
 
     def preload_N(self, elements: ArraysType) -> np.ndarray:
         """Return the forces (k,) [N] in the reference configuration."""
