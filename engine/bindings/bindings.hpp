@@ -43,7 +43,7 @@ void bind_linkage(pybind11::module_& module);
 /// Adds the rest sets of loaded joints to the module.
 void bind_rest_set(pybind11::module_& module);
 
-/// Adds truss_path. Call after bind_thermal_program.
+/// Adds truss_path and truss_recorded_path. Call after bind_thermal_program.
 void bind_truss(pybind11::module_& module);
 
 /// Adds FrictionProblem.

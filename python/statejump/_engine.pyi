@@ -392,6 +392,41 @@ def truss_path(
     progress: Callable[[float], bool | None] | None = ...,
     trace: Callable[[tuple[Any, ...]], object] | None = ...,
 ) -> _Fields: ...
+class TrussDerivative(metaclass=_pybind11_type):
+    def summands(
+        self,
+        nodes: _Items,
+        elements: Mapping[str, _Items],
+        joints: Mapping[str, _Items],
+        programs: Sequence[ThermalProgram],
+        *,
+        constraints: _Items = ...,
+    ) -> _Fields: ...
+    @property
+    def solutions(self) -> int: ...
+    @property
+    def events(self) -> int: ...
+    @property
+    def kinks(self) -> int: ...
+
+class TrussRecord(metaclass=_pybind11_type):
+    @property
+    def path(self) -> _Fields: ...
+    def derivative(self, covectors: ArrayLike) -> TrussDerivative: ...
+
+def truss_recorded_path(
+    nodes: _Items,
+    elements: Mapping[str, _Items],
+    joints: Mapping[str, _Items],
+    programs: Sequence[ThermalProgram],
+    *,
+    constraints: _Items = ...,
+    increments_per_branch: int = ...,
+    event_tolerance: float = ...,
+    energy_tolerance: float = ...,
+    start_friction: str = ...,
+    progress: Callable[[float], bool | None] | None = ...,
+) -> TrussRecord: ...
 def truss_motion(
     nodes: _Items,
     elements: Mapping[str, _Items],

@@ -23,8 +23,8 @@ constexpr double least_step = 1e-6;
 /// its limit resists. It limits the step of an iteration, not the solution.
 constexpr double proximal_share = 1e-6;
 
-/// Copy of the truss with a fraction of its loads and misfits. With fraction 0 the reference
-/// configuration is stress-free.
+}  // namespace
+
 Model loaded(Model model, double fraction) {
   scale_misfits(model, fraction);
   for (Node& node : model.nodes) {
@@ -33,8 +33,6 @@ Model loaded(Model model, double fraction) {
   }
   return model;
 }
-
-}  // namespace
 
 /// Whether loads and misfits do work on at least one of the displacements `shapes` from the
 /// reference configuration.
@@ -68,6 +66,8 @@ std::optional<Stall> PathFollower::follow_loads() {
   z = VectorXd::Zero(system.unknowns());
   origin.statuses = system.all_stick();
   StepStart begin = system.begin(z, 0.0, origin.statuses, 1.0);
+  forget_after(0);
+  MemoryWriter writer = MemoryWriter::none;
   double reached = 0.0;
   double step = 1.0;
   while (reached < 1.0) {
@@ -89,9 +89,12 @@ std::optional<Stall> PathFollower::follow_loads() {
                        solver.regularisation() != Regularisation::displacements &&
                        solver.stability_index() >= 0;
     if (found) {
-      begin = there.commit(trial, 0.0, statuses, begin);
       z = std::move(trial);
       origin.statuses = std::move(statuses);
+      record_start(begin, std::exchange(writer, MemoryWriter::commit), JointModel::pins, 1.0, {},
+                   {});
+      if (record != nullptr) record->steps.back().load_fraction = next;
+      begin = there.commit(z, 0.0, origin.statuses, begin);
       step = 2.0 * (next - reached);
       reached = next;
       continue;
@@ -103,7 +106,10 @@ std::optional<Stall> PathFollower::follow_loads() {
   const SolveReport last =
       newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, origin.statuses);
   note(last);
-  if (last.end == SolveEnd::converged) return std::nullopt;
+  if (last.end == SolveEnd::converged) {
+    record_start(begin, writer, JointModel::pins, 1.0, {}, {});
+    return std::nullopt;
+  }
   return Stall{1.0, last, origin.statuses, z};
 }
 

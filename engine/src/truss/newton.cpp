@@ -152,23 +152,34 @@ std::vector<int> Newton::dependent_joints() const {
   return found;
 }
 
+namespace {
+
+void add_to_diagonal(Eigen::SparseMatrix<double>& matrix, Eigen::Index row, double value) {
+  for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, row); it; ++it) {
+    if (it.row() == row) it.valueRef() += value;
+  }
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> with_compliant_closures(const System& system, const Assembly& at) {
+  Eigen::SparseMatrix<double> regular = at.jacobian();
+  for (Eigen::Index row = system.displacements(); row < regular.rows(); ++row) {
+    if (at.units[index(static_cast<int>(row))] != RowUnit::closure) continue;
+    add_to_diagonal(regular, row, -reaction_compliance / system.stiffness_scale());
+  }
+  return regular;
+}
+
 Regularisation factor_regularised(const System& system, const Assembly& at,
                                   double proximal_stiffness, linear::SparseFactor& factor) {
-  const double stiffness = system.stiffness_scale();
-  if (!(stiffness > 0.0)) return Regularisation::none;
-  Eigen::SparseMatrix<double> regular = at.jacobian();
-  const auto add = [&](Eigen::Index row, double value) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(regular, row); it; ++it) {
-      if (it.row() == row) it.valueRef() += value;
-    }
-  };
-  for (Eigen::Index row = system.displacements(); row < regular.rows(); ++row) {
-    const bool closes = at.units[index(static_cast<int>(row))] == RowUnit::closure;
-    if (closes) add(row, -reaction_compliance / stiffness);
-  }
+  if (!(system.stiffness_scale() > 0.0)) return Regularisation::none;
+  Eigen::SparseMatrix<double> regular = with_compliant_closures(system, at);
   if (factor.factorize(regular)) return Regularisation::reactions;
   if (proximal_stiffness == 0.0) return Regularisation::none;
-  for (Eigen::Index row = 0; row < system.displacements(); ++row) add(row, proximal_stiffness);
+  for (Eigen::Index row = 0; row < system.displacements(); ++row) {
+    add_to_diagonal(regular, row, proximal_stiffness);
+  }
   return factor.factorize(regular) ? Regularisation::displacements : Regularisation::none;
 }
 

@@ -187,6 +187,10 @@ class Newton {
   Tracer* tracer_ = nullptr;
 };
 
+/// The Jacobian with a compliance in every closure row, a thousandth of that of the stiffest
+/// element; see Newton.
+Eigen::SparseMatrix<double> with_compliant_closures(const System& system, const Assembly& at);
+
 /// Factors a singular matrix with a compliance in every closure row. If it is still singular and a
 /// stiffness is given, this stiffness is added to all displacements; see Newton.
 /// @returns what was regularised; none: the matrix is still singular

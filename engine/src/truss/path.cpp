@@ -12,6 +12,7 @@
 #include "path_follower.hpp"
 #include "spins.hpp"
 #include "start_choice.hpp"
+#include "statejump/truss/gradient.hpp"
 #include "trace.hpp"
 
 namespace statejump::truss {
@@ -93,9 +94,16 @@ constexpr int most_held = 4;
 /// change counts as unconfirmed.
 constexpr double nearer = 0.95;
 
-/// Times of the corners of all programs [s]. Corners closer than Model::same_time of the duration
-/// are merged, because times such as 3 · 0.1 s and 0.3 s differ by rounding.
-std::vector<double> corners(const Model& model) {
+/// A note about the beams with spin springs.
+Note spin_note(const Model& model) {
+  Note made{NoteKind::free_spin, 0.0, model.temperature_change(0, 1.0, 0.0), {}};
+  for (const SpinSpring& one : model.spin_springs) made.joints.push_back({"beam", one.name});
+  return made;
+}
+
+}  // namespace
+
+std::vector<double> detail::corners(const Model& model) {
   // If corners are merged, the time of the first program's corner is used, so that its cycles end
   // exactly. The last corner is the latest end of all programs.
   std::vector<double> own{0.0};
@@ -126,16 +134,11 @@ std::vector<double> corners(const Model& model) {
   return times;
 }
 
-/// A note about the beams with spin springs.
-Note spin_note(const Model& model) {
-  Note made{NoteKind::free_spin, 0.0, model.temperature_change(0, 1.0, 0.0), {}};
-  for (const SpinSpring& one : model.spin_springs) made.joints.push_back({"beam", one.name});
-  return made;
-}
+namespace {
 
-}  // namespace
-
-Path solve(const Model& given, const Options& options) {
+/// Follows the path; see solve().
+/// @param record receives every equilibrium; null: nothing is recorded
+Path follow(const Model& given, const Options& options, detail::PathRecord* record) {
   given.validate();
   Model with_springs;
   std::optional<System> built(std::in_place, given);
@@ -169,7 +172,9 @@ Path solve(const Model& given, const Options& options) {
                         .system = system,
                         .options = options,
                         .newton = Newton(system, options.locate_events, going_on),
-                        .rates = detail::RateProblem(system)};
+                        .rates = detail::RateProblem(system),
+                        .record = record};
+  if (record != nullptr) record->model = model;
   if (tracer) follower.newton.trace(&tracer);
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
   follower.slide_rate = VectorXd::Zero(joints);
@@ -180,10 +185,14 @@ Path solve(const Model& given, const Options& options) {
   follower.is_slack = follower.note_slack(0.0, follower.z, follower.origin.statuses);
   system.describe(follower.z, 0.0, follower.origin, follower.state);
   if (!options.cycle_ends_only) follower.path.states.push_back(follower.state);
-  follower.path.cycle_ends.push_back(follower.state);
-
   std::vector<int> changes(model.joints.size());
-  const std::vector<double> times = corners(model);
+  const std::vector<double> times = detail::corners(model);
+  const auto end_cycle = [&] {
+    follower.path.cycle_ends.push_back(follower.state);
+    if (record != nullptr) record->cycle_ends.push_back(record->steps.size() - 1);
+  };
+  end_cycle();
+  if (record != nullptr) record->corners = times;
   int cycle = 1;
   for (std::size_t b = 0; b + 1 < times.size() && follower.path.complete; ++b) {
     const double length = times[b + 1] - times[b];
@@ -319,13 +328,25 @@ Path solve(const Model& given, const Options& options) {
     }
     if (follower.path.complete) follower.refuse_buckled(follower.time);
     if (follower.path.complete && times[b + 1] >= cycle * model.programs.front().period) {
-      follower.path.cycle_ends.push_back(follower.state);
+      end_cycle();
       ++cycle;
     }
   }
   follower.path.factorizations = follower.newton.factorizations();
   if (options.cycle_ends_only) follower.path.states = follower.path.cycle_ends;
   return std::move(follower.path);
+}
+
+}  // namespace
+
+Path solve(const Model& model, const Options& options) {
+  return follow(model, options, nullptr);
+}
+
+RecordedPath solve_recorded(const Model& model, const Options& options) {
+  const auto record = std::make_shared<detail::PathRecord>();
+  Path path = follow(model, options, record.get());
+  return {std::move(path), record};
 }
 
 }  // namespace statejump::truss

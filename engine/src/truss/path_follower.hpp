@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "newton.hpp"
+#include "path_record.hpp"
 #include "rate_problem.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/truss/path.hpp"
@@ -29,6 +30,15 @@ FailureFields failure_at(FailureKind kind, const Model& model, double time);
 
 /// Result of a step. Only a step with the result `done` changes the state.
 enum class StepEnd : unsigned char { done, event_inside, not_converged, imprecise, stopped };
+
+/// Times of the corners of all programs [s], in ascending order. Corners closer than
+/// Model::same_time of the duration are merged, because times such as 3 · 0.1 s and 0.3 s differ by
+/// rounding.
+std::vector<double> corners(const Model& model);
+
+/// Copy of a truss with a fraction of its loads and misfits. With fraction 0 the reference
+/// configuration is stress-free.
+Model loaded(Model model, double fraction);
 
 /// Both ends of a converged step.
 struct Ends {
@@ -64,6 +74,10 @@ struct PathFollower {
   const Options& options;
   Newton newton;
   RateProblem rates;
+  /// Receives every equilibrium; null: nothing is recorded.
+  PathRecord* record = nullptr;
+  /// How the memory at the start of the next recorded step was written.
+  MemoryWriter first_writer = MemoryWriter::begin;
   double lever = lever_of(model, system.size());
   Path path = {};
   /// Joints already named in a note of each kind.
@@ -135,6 +149,12 @@ struct PathFollower {
   void note(const SolveReport& report);
   void start();
   std::optional<Stall> follow_loads();
+  void record_start(const StepStart& from, MemoryWriter writer, JointModel joints, double opening,
+                    const VectorXd& written_at, const Statuses& written_with);
+  std::size_t recorded() const { return record == nullptr ? 0 : record->steps.size(); }
+  void forget_after(std::size_t count) {
+    if (record != nullptr) record->keep(count);
+  }
   bool is_near(const VectorXd& moved) const;
   bool are_loaded(const std::vector<VectorXd>& shapes) const;
   [[noreturn]] void refuse_overload(const Stall& at);

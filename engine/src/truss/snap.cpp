@@ -128,6 +128,7 @@ bool PathFollower::follow_snap(double until, double tolerance) {
   const Position before = position();
   const auto events = static_cast<std::ptrdiff_t>(path.events.size());
   const std::size_t states = path.states.size();
+  const std::size_t steps_before = recorded();
   const double level_before = slack_level;
   const double stride = std::min(tolerance, (until - time) / (most_snap_steps + 1));
   const int moving = before.rate.size() == 0 ? 0 : system.displacements();
@@ -159,6 +160,7 @@ bool PathFollower::follow_snap(double until, double tolerance) {
   snap_travel += whole;
   if (!rests || snap_travel > plays) {
     return_to(before);
+    forget_after(steps_before);
     path.events.erase(path.events.begin() + events, path.events.end());
     path.states.resize(states, State{});
     return false;

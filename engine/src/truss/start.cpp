@@ -60,6 +60,25 @@ void PathFollower::note(const SolveReport& report) {
   path.largest_closure_residual = std::max(path.largest_closure_residual, report.closure_residual);
 }
 
+/// Records the present state as an equilibrium before the path.
+/// @param from start of the solve that led to it
+/// @param written_at, written_with where `writer` wrote the memory in `from`, unless it was written
+/// by the end of the last recorded step
+void PathFollower::record_start(const StepStart& from, MemoryWriter writer, JointModel joints,
+                                double opening, const VectorXd& written_at,
+                                const Statuses& written_with) {
+  if (record == nullptr) return;
+  record->steps.push_back({.writer = writer,
+                           .written_at = written_at,
+                           .written_with = written_with,
+                           .written_opening = opening,
+                           .start = from,
+                           .z = z,
+                           .statuses = origin.statuses,
+                           .joints = joints,
+                           .opening = opening});
+}
+
 /// Relaxes the reference configuration at ΔT = 0; see solve().
 void PathFollower::start() {
   origin.statuses = system.all_stick();
@@ -80,6 +99,7 @@ void PathFollower::start() {
       path.complete = false;
       return;
     }
+    record_start(begin, MemoryWriter::none, JointModel::pins, 1.0, {}, {});
     const bool near = report.end == SolveEnd::converged && is_near(z);
     if (!near || newton.stability_index() < 0) {
       if (near) refuse_buckled(0.0);
@@ -204,11 +224,13 @@ void PathFollower::open_clearances() {
   if (with_play.empty()) return;
   const VectorXd pinned_z = z;
   const Statuses pinned = origin.statuses;
+  const std::size_t pinned_steps = recorded();
   SolveReport last;
   // First, journals move without friction until contact forces balance. If many lightly loaded
   // journals have no such position nearby, friction then holds them where pin forces push them.
   for (const JointModel contact : {JointModel::frictionless, JointModel::friction}) {
     z = pinned_z;
+    forget_after(pinned_steps);
     origin = system.begin(z, 0.0, pinned, 1.0);
     seat(with_play, contact);
     last = open_seated(with_play, contact);
@@ -260,6 +282,7 @@ SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointMo
     VectorXd trial = z;
     Statuses statuses = origin.statuses;
     seat_at(opened, next, with_play, trial);
+    const VectorXd seated = record == nullptr ? VectorXd() : trial;
     StepStart begin = system.begin(trial, 0.0, statuses, next);
     begin.slack_stiffness = system.slack_stiffness(slack_level);
     report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
@@ -271,7 +294,8 @@ SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointMo
     if (report.end == SolveEnd::stopped) return report;
     if (report.end == SolveEnd::converged) {
       z = std::move(trial);
-      origin.statuses = std::move(statuses);
+      std::swap(origin.statuses, statuses);
+      record_start(begin, MemoryWriter::begin, contact, next, seated, statuses);
       opened = next;
       share *= 2.0;
       continue;
@@ -303,6 +327,7 @@ bool PathFollower::come_to_rest_at(double opening, JointModel contact,
   VectorXd seated = z;
   seat_at(opened, opening, with_play, seated);
   const VectorXd before = std::exchange(z, std::move(seated));
+  const std::size_t steps_before = recorded();
   const bool rests = come_to_rest(
       [&](double level) -> std::optional<double> {
         StepStart begin = system.begin(z, 0.0, origin.statuses, opening);
@@ -316,14 +341,16 @@ bool PathFollower::come_to_rest_at(double opening, JointModel contact,
         if (report.end == SolveEnd::stopped) path.complete = false;
         if (report.end != SolveEnd::converged) return std::nullopt;
         const double moved = length_of(trial - z, system.displacements());
-        z = std::move(trial);
-        origin.statuses = std::move(statuses);
+        std::swap(z, trial);
+        std::swap(origin.statuses, statuses);
+        record_start(begin, MemoryWriter::begin, contact, opening, trial, statuses);
         return moved;
       },
       0.0);
   if (rests) return true;
   z = before;
   origin.statuses = statuses_before;
+  forget_after(steps_before);
   return false;
 }
 

@@ -51,6 +51,8 @@ Joint without_friction(const Type& joint) {
   return joint;
 }
 
+}  // namespace
+
 Model without_friction(const Model& model) {
   Model loose = model;
   for (Joint& joint : loose.joints) {
@@ -58,6 +60,8 @@ Model without_friction(const Model& model) {
   }
   return loose;
 }
+
+namespace {
 
 /// Status with which friction begins. A slipping joint without play sticks; no other status
 /// changes.
@@ -88,6 +92,10 @@ void begin(const Type& joint, const Trial& trial, JointStatus status, double* no
 
 }  // namespace
 
+void begin_at_zero_force(const Joint& joint, const Trial& trial, JointStatus status, double* now) {
+  std::visit([&](const auto& one) { begin(one, trial, status, now); }, joint);
+}
+
 void start_as_chosen(PathFollower& follower) {
   const System& system = follower.system;
   if (follower.options.start_friction == StartFriction::stuck) {
@@ -104,7 +112,8 @@ void start_as_chosen(PathFollower& follower) {
                      .system = loose_system,
                      .options = follower.options,
                      .newton = Newton(loose_system, follower.options.locate_events, going_on),
-                     .rates = RateProblem(loose_system)};
+                     .rates = RateProblem(loose_system),
+                     .record = follower.record};
   found.slide_rate = VectorXd::Zero(follower.slide_rate.size());
   found.state.joint_dissipation = VectorXd::Zero(follower.slide_rate.size());
   found.start();
@@ -116,15 +125,16 @@ void start_as_chosen(PathFollower& follower) {
   for (std::size_t i = 0; i < statuses.size(); ++i) {
     statuses[i] = begins(follower.model.joints[i], statuses[i]);
   }
+  if (follower.record != nullptr) {
+    for (RecordedStep& step : follower.record->steps) step.without_friction = true;
+  }
+  follower.first_writer = MemoryWriter::zero_force;
   follower.origin = system.begin(follower.z, 0.0, statuses, 1.0);
   for (int i = 0; i < static_cast<int>(follower.model.joints.size()); ++i) {
     const Trial at =
         system.trial(i, follower.z, 0.0, follower.origin, JointModel::frictionless, 1.0);
-    std::visit(
-        [&](const auto& one) {
-          begin(one, at, statuses[index(i)], system.history(i, follower.origin));
-        },
-        follower.model.joints[index(i)]);
+    begin_at_zero_force(follower.model.joints[index(i)], at, statuses[index(i)],
+                        system.history(i, follower.origin));
   }
 }
 

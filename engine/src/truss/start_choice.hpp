@@ -11,4 +11,10 @@ namespace statejump::truss::detail {
 /// Without friction, a truss may be a mechanism under its loads.
 void start_as_chosen(PathFollower& follower);
 
+/// Copy of a truss whose joints have no friction, with the same unknowns.
+Model without_friction(const Model& model);
+
+/// Writes the memory of a joint in which friction begins at zero force.
+void begin_at_zero_force(const Joint& joint, const Trial& trial, JointStatus status, double* now);
+
 }  // namespace statejump::truss::detail

@@ -328,6 +328,18 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   idle_changes = std::move(idle);
   const bool is_confirmed = !std::exchange(expects_at_start, false) || !events.empty();
   looks_at_start = (looks_at_start && is_confirmed) || events.size() > idle_changes.size();
+  if (record != nullptr) {
+    const MemoryWriter writer = std::exchange(first_writer, MemoryWriter::commit);
+    const bool is_first = writer != MemoryWriter::commit;
+    record->steps.push_back({.writer = writer,
+                             .written_at = is_first ? z : VectorXd(),
+                             .written_with = is_first ? begin.statuses : Statuses(),
+                             .start = begin,
+                             .time = target,
+                             .z = trial,
+                             .statuses = trial_statuses,
+                             .is_short = is_short});
+  }
   state = std::move(next);
   rate = rate_after;
   slide_rate = slide_rate_after;

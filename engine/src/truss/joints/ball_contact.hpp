@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <unsupported/Eigen/AutoDiff>
 
 #include "statejump/kernel/rotation.hpp"
@@ -284,9 +285,10 @@ struct BallBend {
   Number mean;          ///< Mean compliance of the step [m/N].
 };
 
+/// @param softens see Trial::softens
 template <class Number>
 BallBend<Number> ball_bend(const BallJoint& joint, const BallState<Number>& now,
-                           const BallMemory& start) {
+                           const BallMemory& start, std::optional<bool> softens = {}) {
   const HertzContact contact{joint.hertz_stiffness, joint.mindlin_stiffness,
                              joint.radial_clearance};
   BallBend<Number> bend;
@@ -298,7 +300,7 @@ BallBend<Number> ball_bend(const BallJoint& joint, const BallState<Number>& now,
   if (before == 0.0) {
     bend.pull = bend.moved.slide;
     bend.mean = bend.compliance;
-  } else if (value_of(bend.compliance) > before) {
+  } else if (softens.value_or(value_of(bend.compliance) > before)) {
     bend.pull = bend.moved.slide + bend.moved.kept * Number(before);
   } else {
     // ∫ dF/k_t by the trapezoidal rule.

@@ -86,7 +86,7 @@ Vector<Number> across(const Vector<Number>& owed, const BallState<Number>& now) 
 /// Elastic predictor of the step, with the slip correction.
 template <class Number>
 BallBend<Number> bend_of(const BallJoint& joint, const Trial& trial, const BallState<Number>& now) {
-  BallBend<Number> bend = ball_bend(joint, now, BallMemory::of(trial.history));
+  BallBend<Number> bend = ball_bend(joint, now, BallMemory::of(trial.history), trial.softens);
   if (!trial.owed.isZero(0.0)) bend.pull += across<Number>(trial.owed.cast<Number>(), now);
   return bend;
 }
@@ -363,6 +363,12 @@ void BallJoint::commit(const Trial& trial, JointStatus status, double* after) co
   // out.
   end.axis = (carried - now.normal * now.normal.dot(carried)).normalized();
   end.to(after);
+}
+
+bool BallJoint::softens(const Trial& trial) const {
+  const double normal = state_of(*this, trial).normal_force;
+  return contact_of(*this).tangential_compliance(normal).value >
+         BallMemory::of(trial.history).compliance;
 }
 
 Vector3d BallJoint::lag(const Trial& trial) const {

@@ -175,7 +175,7 @@ ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
   const auto [compliance, slope] = contact_of(joint).tangential_compliance(normal);
   const double before = start.compliance;
   if (before == 0.0) return {compliance * friction, slope * friction, compliance};
-  if (compliance > before) {
+  if (trial.softens.value_or(compliance > before)) {
     return {compliance * friction - before * start.friction, slope * friction, compliance};
   }
   // ∫ dF/k_t by the trapezoidal rule.
@@ -635,6 +635,10 @@ void ClearanceRevolute::commit(const Trial& trial, JointStatus status, double* a
   kernel::PartialSlipMemory memory = detail::read_partial_slip(trial.history + Memory::size);
   rub(*this, trial, status == JointStatus::open, memory);
   detail::write_partial_slip(memory, after + Memory::size);
+}
+
+bool ClearanceRevolute::softens(const Trial& trial) const {
+  return tangential_compliance(*this, trial.force[0]) > Memory::of(trial.history).compliance;
 }
 
 Eigen::Vector3d ClearanceRevolute::lag(const Trial& trial) const {

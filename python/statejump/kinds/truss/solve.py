@@ -2,7 +2,8 @@
 """Quasi-static path of a truss case: the reduced model."""
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, overload
 
@@ -181,17 +182,29 @@ def path(
     :raises StatejumpError: a link is driven
     """
     check_at_rest(truss)
-    try:
+    with failing(truss):
         found = _engine.truss_path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, energy_tolerance=energy_tolerance, cycle_ends_only=cycle_ends_only,
             problem_times=problem_times, start_friction=truss.start_friction, progress=progress,
             trace=trace,
         )
-    except _engine.EngineFailure as failure:
-        raise _failed(truss, failure) from None
+    return path_from(truss, found)
+
+
+def path_from(truss: ResolvedTruss, found: dict[str, Any]) -> TrussPath:
+    """Return a path that the engine returned."""
     events = TrussEvents(truss, **found.pop("events"))
     return TrussPath(truss=truss, events=events, **found)
+
+
+@contextmanager
+def failing(truss: ResolvedTruss) -> Iterator[None]:
+    """Raise failures of the engine as errors of the package, with a remedy if one is known."""
+    try:
+        yield
+    except _engine.EngineFailure as failure:
+        raise _failed(truss, failure) from None
 
 
 def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: None, **options: Any) -> TrussPath:

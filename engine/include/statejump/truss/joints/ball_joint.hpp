@@ -88,6 +88,7 @@ struct BallJoint {
   void begin(const Trial& trial, JointStatus status, double* now) const;
   void commit(const Trial& trial, JointStatus status, double* after) const;
   bool rolls() const { return friction_coefficient > 0.0 && partial_slip == 0; }
+  bool softens(const Trial& trial) const;
   Eigen::Vector3d lag(const Trial& trial) const;
   double slip(const Trial& trial, const double* after) const;
   double dissipation(const Trial& trial, const double* after, double slip) const;

@@ -103,6 +103,9 @@ struct Trial {
   double slack_stiffness = 0.0;
   /// Whether this stiffness also acts on joints in contact.
   bool damps_contact = false;
+  /// Whether the compliance of the contact grows in the step. Empty: as its normal forces require.
+  /// Derivatives fix it, because short steps lie next to the kink between both laws.
+  std::optional<bool> softens;
   /// Rounding errors of a length [m] and of a force [N]; 0: inequalities are checked exactly.
   double length_rounding = 0.0;
   double force_rounding = 0.0;
@@ -167,6 +170,7 @@ struct Seat {
 /// | `contact_force()` | force against which that growth works [N] |
 /// | `beyond_edges()` | distance beyond each edge at which the stiffness jumps [m] |
 /// | `has_kinks` | its force has kinks within a status, which no step ends at |
+/// | `softens()` | whether the compliance of its contact grows in the step |
 /// | `slack_motion()` | motion of an open joint since the start of the step [m] |
 /// | `ties()` | linear constraints of its nodes, see ConstraintTerm |
 ///
