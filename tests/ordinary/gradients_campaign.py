@@ -26,7 +26,7 @@ import structures
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.answers.gradient import Gradient, RecordedPath
 from statejump.kinds.truss.answers.outputs import node_output
-from statejump.kinds.truss.answers.sensitivity import changed, parameters
+from statejump.kinds.truss.answers.parameters import changed, parameters
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 FIELDS = ("family", "seed", "parameter", "rolls", "elasticity", "by_differences", "error", "deviation", "solutions",
@@ -134,8 +134,10 @@ def table(rows: list[Row]) -> str:
             continue
         smooth = [row for row in ours if row["error"] < CONVERGED]
         found = np.array([row["deviation"] for row in smooth] or [np.nan])
-        lines.append(f"| {'integral along the path' if path_integrals else 'function of the state'} | "
-                     f"{len({(row['family'], row['seed']) for row in ours})} | {len(ours)} | {len(ours) - len(smooth)} | "
+        memory = "integral along the path" if path_integrals else "function of the state"
+        lines.append(f"| {memory} | "
+                     f"{len({(row['family'], row['seed']) for row in ours})} | {len(ours)} | "
+                     f"{len(ours) - len(smooth)} | "
                      f"{np.median(found):.1e} | {np.quantile(found, 0.95):.1e} | {found.max():.1e} |")
     return "\n".join(lines)
 

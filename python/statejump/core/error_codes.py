@@ -929,6 +929,7 @@ CODES: dict[str, Code] = {
             "thermal.period_s do"
         ),
     ),
+    "key_without_number": Code(cause="it is no number and no list of numbers"),
     "program_has_own_cycles": Code(cause="program {program!r} of the case has cycles of its own"),
     "reference_without_section": Code(
         cause="there is no {what_it_is} {name!r}",

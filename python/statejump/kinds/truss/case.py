@@ -18,6 +18,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.sections import TrussSections
 from statejump.schema.fields import definition
 
+_DERIVATIVES = Later("statejump.kinds.truss.answers.derivatives:derivatives")
 _BOUNDS = Later("statejump.kinds.truss.bounds.study:bounds")
 
 
@@ -42,6 +43,15 @@ class TrussCase(TrussSections):
         :raises StatejumpError: the truss has no such bounds yet
         """
         return _BOUNDS(self, **settings)
+
+    def gradient(self, output: str = "node", **settings: Any) -> Any:
+        """Return the exact derivatives of the jump of an output by all parameters.
+
+        :param settings: those of :func:`statejump.kinds.truss.answers.derivatives.derivatives`
+        :return: :class:`statejump.kinds.truss.answers.derivatives.JumpGradient`
+        :raises StatejumpError: the output does not exist, or the solver finds no path
+        """
+        return _DERIVATIVES(self, output=output, **settings)
 
     @property
     def implausible(self) -> tuple[str, ...]:

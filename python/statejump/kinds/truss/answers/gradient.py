@@ -9,7 +9,7 @@ parameters only, one change of a parameter in all items gives the derivative of 
 """
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,8 @@ import numpy as np
 from statejump import _engine
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.answers.outputs import Output
-from statejump.kinds.truss.answers.sensitivity import changed, parameters
+from statejump.kinds.truss.answers.parameters import changed, parameters, part_of
+from statejump.kinds.truss.check_mechanism import check_at_rest
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_items, failing, path_from
@@ -62,6 +63,11 @@ class Gradient:
         self.solutions, self.events, self.kinks = (
             self._adjoint.solutions, self._adjoint.events, self._adjoint.kinks)
 
+    def names(self, section: str) -> Sequence[str]:
+        """Return the names of the items of a section."""
+        found: Sequence[str] = part_of(self.truss, section).names
+        return found
+
     def by_parameter(self, section: str, key: str, which: np.ndarray | None = None) -> Derivative:
         """Return the derivative of the jump by the logarithm of a parameter of some items of a section, or of all.
 
@@ -74,10 +80,10 @@ class Gradient:
         def at(step: float) -> np.ndarray:
             given = self._summands(changed(self.truss, section, key, np.where(there, 1 + step, 1.0)))
             own = _of_section(given, section)
-            return np.concatenate(([_sum(given)], own))
+            return np.append(own, _sum(given))
 
         found, error = _extrapolated(at)
-        return Derivative(float(found[0]), found[1:], float(error[0]))
+        return Derivative(float(found[-1]), found[:-1], float(error[-1]))
 
     def along(self, changed_by: Callable[[float], ResolvedTruss]) -> Derivative:
         """Return the derivative of the jump by a number on which the truss depends.
@@ -100,6 +106,7 @@ class RecordedPath:
 
     def __init__(self, truss: ResolvedTruss, increments_per_branch: int = 50,
                  on_progress: OnProgress = lambda share: None) -> None:
+        check_at_rest(truss)
         with failing(truss):
             self._record = _engine.truss_recorded_path(
                 **engine_items(truss), increments_per_branch=increments_per_branch,

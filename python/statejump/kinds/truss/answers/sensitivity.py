@@ -1,23 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sensitivities of the jump of an output to friction, clearances, stiffnesses and preloads, by central differences."""
+"""Sensitivities of the jump of an output to friction, clearances, stiffnesses and preloads: exact derivatives, compared
+with central differences of paths, which show kinks nearby."""
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
+from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import OnProgress
+from statejump.kinds.truss.answers.gradient import Gradient, RecordedPath
 from statejump.kinds.truss.answers.jumps import quick_path
 from statejump.kinds.truss.answers.outputs import Output
-from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.answers.parameters import changed, parameters, part_of
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
 STEP = 1e-2  # relative change of a parameter; the second difference uses half of this change
 AGREE = 0.02  # allowed relative difference between the results of both changes
+ROUNDING = 1e-10  # exact elasticity below which a parameter has no influence
 NOISE = 1e-6  # fraction of the jump: error of a hundred events located to 1e-9 of a branch, with a margin
 
 
@@ -29,37 +31,13 @@ class Sensitivity:
     items: int
     value: float | None  # None: the items differ
     per_relative_change: float  # in the output's unit
-    half_step: float
-    verdict: str  # "smooth", "no influence", "steps disagree", "not differentiable", "failed: ..."
+    half_step: float  # by differences; NaN: not computed
+    verdict: str  # "smooth", "no influence", "one-sided", "steps disagree", "not differentiable", "failed: ..."
 
     @property
     def per_unit(self) -> float | None:
         """Change of the jump per unit of the parameter; None if the items have different values."""
         return None if self.value is None else self.per_relative_change / self.value
-
-
-def parameters(truss: ResolvedTruss) -> list[tuple[str, str, np.ndarray]]:
-    """Return section, key and values (items,) of every parameter that may affect a jump."""
-    found = [(joint.section, key, values) for joint in JOINTS
-             for key, values in joint.parameters(truss.joints[joint.section])]
-    found += [("link", key, getattr(truss.links, key)) for key in ("young_modulus_Pa", "cross_section_area_m2")]
-    return found + [(element.section, key, getattr(truss.elements[element.section], key)) for element in ELEMENTS
-                    for key in element.varied]
-
-
-def _part(truss: ResolvedTruss, section: str) -> Any:
-    """Return the arrays of a section."""
-    return {**truss.joints, **truss.elements, "link": truss.links}[section]
-
-
-def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) -> ResolvedTruss:
-    """Return the truss with one parameter of every item multiplied by a factor (items,)."""
-    part = _part(truss, section)
-    part = replace(part, **{key: getattr(part, key) * factor})
-    for element in ELEMENTS:
-        if element.section == section:
-            return truss.with_elements(**{section: element.changed(truss, part)})
-    return truss.with_joints(**{section: part}) if section in truss.joints else replace(truss, links=part)
 
 
 def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:
@@ -72,39 +50,57 @@ def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:
 
 
 def sensitivities(
-    found: TrussPath, output: Output, *, each: bool = False, step: float = STEP,
+    found: TrussPath, output: Output, *, each: bool = False, step: float = STEP, increments: int = 50,
     on_progress: OnProgress = lambda share: None,
 ) -> list[Sensitivity]:
     """Return the sensitivities of an output's jump to all parameters. Parameters that are 0 or missing are omitted.
 
-    A parameter is changed by ±step and ±step/2 of its value, in all items of a section together or, with ``each``, one
-    by one. Both steps disagree if their slopes differ by more than AGREE. The verdict is "not differentiable" in two
-    cases: the one-sided slopes differ by more than AGREE at both steps, or both steps disagree and the sequence of
-    statuses of a joint depends on the change. If they disagree for another reason, the verdict is "steps disagree".
+    The derivatives are exact where the engine can compute them, else central differences. With ``each`` they are those
+    of single items, and differences are not computed beside exact derivatives. Otherwise a parameter is also changed by
+    ±step and ±step/2 of its value, in all items of a section together. The verdict is "not differentiable" in two
+    cases: the one-sided slopes differ by more than AGREE at both steps, or both steps disagree by more than AGREE and
+    the sequence of statuses of a joint depends on the change. If they disagree for another reason, the verdict is
+    "steps disagree". "one-sided": two joints change at once, so that the derivative holds for one sign of a change.
     """
     truss, own_jump = found.truss, output.jump(found)
-    asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []
-    for section, key, values in parameters(truss):
-        there = np.isfinite(values) & (values != 0)
-        if not there.any():
-            continue
-        if not each:
-            asked.append((section, key, "*", there, values))
-            continue
-        for index in np.flatnonzero(there):
-            asked.append((section, key, _part(truss, section).names[index], np.arange(len(values)) == index, values))
-    rows = []
-    for place, (section, key, name, which, values) in enumerate(asked):
-        own = values[which]
-        same = float(own[0]) if np.ptp(own) <= 1e-12 * abs(own[0]) else None
-        label = f"{section}.{name}.{key}"
-        try:
-            found_of = differences(truss, section, key, which, output, own_jump, step)
-            rows.append(Sensitivity(label, len(own), same, *found_of))
-        except StatejumpError as problem:
-            rows.append(Sensitivity(label, len(own), same, float("nan"), float("nan"), f"failed: {problem}"))
+    try:
+        exact = Gradient(RecordedPath(truss, increments), output)
+    except EngineFailed:
+        exact = None
+    rows: list[Sensitivity] = []
+    asked = [(section, key, values, there) for section, key, values in parameters(truss)
+             if (there := np.isfinite(values) & (values != 0)).any()]
+    for place, (section, key, values, there) in enumerate(asked):
+        by_items = None if exact is None else exact.by_parameter(section, key)
+        groups = [("*", there)] if not each else [
+            (part_of(truss, section).names[item], np.arange(len(values)) == item) for item in np.flatnonzero(there)]
+        for name, which in groups:
+            own = values[which]
+            same = float(own[0]) if np.ptp(own) <= 1e-12 * abs(own[0]) else None
+            label = f"{section}.{name}.{key}"
+            if each and exact is not None and by_items is not None:
+                slope = float(by_items.items[which][0])
+                word = _word(slope, own_jump, exact.kinks)
+                rows.append(Sensitivity(label, 1, same, slope, float("nan"), word))
+                continue
+            try:
+                whole, half, word = differences(truss, section, key, which, output, own_jump, step)
+            except StatejumpError as problem:
+                whole, half, word = float("nan"), float("nan"), f"failed: {problem}"
+            if by_items is not None:
+                whole = by_items.total
+                if word == "steps disagree":
+                    word = _word(whole, own_jump, exact.kinks if exact else 0)
+            rows.append(Sensitivity(label, len(own), same, whole, half, word))
         on_progress((place + 1) / len(asked))
     return rows
+
+
+def _word(slope: float, jump: float, kinks: int) -> str:
+    """Return the verdict on an exact derivative."""
+    if abs(slope) <= ROUNDING * abs(jump):
+        return "no influence"
+    return "one-sided" if kinks else "smooth"
 
 
 def differences(

@@ -168,7 +168,8 @@ def study(
             shares = _shares(found, asked, on_progress, tables, notes)
         if sensitivity:
             with phase("sensitivities") as on_progress:
-                asked_of = sensitivities(found, asked, each=each, step=step, on_progress=on_progress)
+                asked_of = sensitivities(found, asked, each=each, step=step, increments=increments,
+                                         on_progress=on_progress)
             tables["sensitivities"] = rows.sensitivity_rows(asked_of, jump)
             if any(row.verdict == "not differentiable" for row in asked_of):
                 notes.append(Note("jump_has_kink"))

@@ -10,7 +10,7 @@ import numpy as np
 
 from statejump.control.study import DesignChoices, grid, highest
 from statejump.core.errors import NotAllowed, UnknownKey
-from statejump.kinds.truss.answers.sensitivity import changed, parameters
+from statejump.kinds.truss.answers.parameters import changed, parameters
 from statejump.kinds.truss.arrays import distances
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
