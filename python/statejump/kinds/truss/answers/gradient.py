@@ -29,6 +29,7 @@ from statejump.kinds.truss.solve import TrussPath, engine_items, failing, path_f
 STEPS = (1e-3, 1e-5)
 LEVELS = 6  # halvings of the change
 EXACT = 1e-13  # estimated relative error at which the extrapolation ends
+SEARCH = 1e-7  # the same for searches, which do not need more digits
 
 
 @dataclass(frozen=True)
@@ -73,12 +74,11 @@ class Gradient:
 
         :param which: the items (n,) bool; all that have a value other than 0 if it is missing
         """
-        values = next(values for one, name, values in parameters(self.truss) if (one, name) == (section, key))
-        there = np.isfinite(values) & (values != 0)
+        there = _with_value(self.truss, section, key)
         there = there if which is None else there & which
 
         def at(step: float) -> np.ndarray:
-            given = self._summands(changed(self.truss, section, key, np.where(there, 1 + step, 1.0)))
+            given = self.summands(changed(self.truss, section, key, np.where(there, 1 + step, 1.0)))
             own = _of_section(given, section)
             return np.append(own, _sum(given))
 
@@ -90,10 +90,11 @@ class Gradient:
 
         :param changed_by: returns the truss after a change of the number; supports and items stay the same
         """
-        found, error = _extrapolated(lambda step: np.array([_sum(self._summands(changed_by(step)))]))
+        found, error = _extrapolated(lambda step: np.array([_sum(self.summands(changed_by(step)))]))
         return Derivative(float(found[0]), found[:0], float(error[0]))
 
-    def _summands(self, truss: ResolvedTruss) -> dict[str, Any]:
+    def summands(self, truss: ResolvedTruss) -> dict[str, Any]:
+        """Return the Lagrangian of a changed truss, a summand for each item."""
         made: dict[str, Any] = self._adjoint.summands(**engine_items(truss))
         return made
 
@@ -120,6 +121,29 @@ class RecordedPath:
             return self._record.derivative(covectors)
 
 
+def item_derivatives(gradients: Sequence[Gradient], section: str, key: str, accuracy: float = SEARCH) -> np.ndarray:
+    """Return the derivatives (outputs, items) of jumps by the logarithm of a parameter of each item of a section.
+
+    :param gradients: of outputs of one path
+    :param accuracy: relative error at which the extrapolation ends
+    """
+    truss = gradients[0].truss
+    there = _with_value(truss, section, key)
+
+    def at(step: float) -> np.ndarray:
+        other = changed(truss, section, key, np.where(there, 1 + step, 1.0))
+        return np.stack([_of_section(one.summands(other), section) for one in gradients])
+
+    return _extrapolated(at, accuracy)[0]
+
+
+def _with_value(truss: ResolvedTruss, section: str, key: str) -> np.ndarray:
+    """Return the items (n,) bool of a section whose parameter has a value other than 0."""
+    values = next(values for one, name, values in parameters(truss) if (one, name) == (section, key))
+    there: np.ndarray = np.isfinite(values) & (values != 0)
+    return there
+
+
 def _covectors(found: TrussPath, output: Output) -> np.ndarray:
     """Return the derivative of the jump of an output by the displacements at the ends of cycles (ends, nodes, 3)."""
     ends = found.cycle_ends["displacement_m"]
@@ -143,20 +167,22 @@ def _by_displacements(value: Callable[[np.ndarray], float], moved: np.ndarray, s
     return made
 
 
-def _extrapolated(function: Callable[[float], np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def _extrapolated(function: Callable[[float], np.ndarray], accuracy: float = EXACT
+                  ) -> tuple[np.ndarray, np.ndarray]:
     """Return the derivatives at 0 of a vector function, and their estimated errors, each from the best step."""
     best: np.ndarray = np.array(0.0)
     error: np.ndarray = np.array(np.inf)
     for first in STEPS:
-        found, estimate = _from_step(function, first)
+        found, estimate = _from_step(function, first, accuracy)
         better = estimate < error
         best, error = np.where(better, found, best), np.where(better, estimate, error)
-        if (error <= EXACT * np.abs(best).max(initial=0.0)).all():
+        if (error <= accuracy * np.abs(best).max(initial=0.0)).all():
             break
     return best, error
 
 
-def _from_step(function: Callable[[float], np.ndarray], step: float) -> tuple[np.ndarray, np.ndarray]:
+def _from_step(function: Callable[[float], np.ndarray], step: float, accuracy: float
+               ) -> tuple[np.ndarray, np.ndarray]:
     last: list[np.ndarray] = []
     best, error = np.array(0.0), np.array(np.inf)
     for level in range(LEVELS):
@@ -167,7 +193,7 @@ def _from_step(function: Callable[[float], np.ndarray], step: float) -> tuple[np
             estimate = np.maximum(np.abs(now[-1] - now[-2]), np.abs(now[-1] - last[order]))
             better = estimate < error
             best, error = np.where(better, now[-1], best), np.where(better, estimate, error)
-        if level and (error <= EXACT * np.abs(best).max(initial=0.0)).all():
+        if level and (error <= accuracy * np.abs(best).max(initial=0.0)).all():
             break
         last, step = now, 0.5 * step
     return best, error
