@@ -15,6 +15,7 @@ is stable.
 """
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,6 +34,10 @@ MARGIN = 0.03
 # Fraction of the elastic stiffness that remains under compression. Below it, loads are followed at large displacements.
 # A flat arch at its snap-through load has 0.81 for small displacements.
 SHALLOW = 0.85
+# Fraction of the stiffness that remains at the shape to which small displacements deform a hot structure. The rise of a
+# flat arch changes by c in small displacements if at large ones it changes to √(h² - 2 c h): the arch passes its chord,
+# a limit point, at c = h/2, where small displacements leave a quarter of the stiffness.
+FLATTENED = 0.5
 FAR = 0.05  # of the size
 
 
@@ -144,6 +149,14 @@ class Frame:
                     "thermal_expansion_per_K"]
             found.append(tension)
         return found
+
+    def deformed(self, moved: np.ndarray) -> Frame:
+        """Return the structure with its bars at another shape, without new tensions."""
+        made = copy(self)
+        made.x = self.x + moved.reshape(self.x.shape)
+        made._bars()
+        made.stiffness, made.tension = self.stiffness, self.tension
+        return made
 
     def motions(self, sliding: bool) -> np.ndarray:
         """Return a basis of the displacements that supports and joints permit; pins are held, sliders free or held."""
@@ -402,12 +415,16 @@ def _has_slack(frame: Frame, held: np.ndarray, active: np.ndarray) -> bool:
 
 def _stands_heat(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.ndarray, tension: np.ndarray) -> bool:
     """Return whether a structure is stable at the extremes of its temperature programs, without the cables slack there.
+    Thermal displacements that make the structure much softer are not small: such a structure may snap through.
 
     :param free: basis of the displacements to examine
     """
     for heat in frame.thermal_tensions():
         # Yielding joints reduce bar forces, so held joints give the largest forces.
-        carried = tension + basis_solution(frame, held, active, heat)
+        moved, carried = basis_solution(frame, held, active, heat)
+        carried = tension + carried
+        if _flattens(frame, held, active, tension, moved):
+            return False
         taut = active & (~frame.cables | (carried > 0))
         # The remaining tensions are not in equilibrium if other cables have become slack.
         if (taut != active).any() and softest(frame.elastic(taut), held) < FREE:
@@ -415,6 +432,15 @@ def _stands_heat(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.nd
         if softest(frame.elastic(taut) + frame.geometric(np.where(taut, carried, 0.0)), free) < FREE:
             return False
     return True
+
+
+def _flattens(frame: Frame, held: np.ndarray, active: np.ndarray, tension: np.ndarray, moved: np.ndarray) -> bool:
+    """Return whether thermal displacements make a structure much softer on the way to an extreme temperature."""
+    def least(there: Frame) -> float:
+        return softest(there.elastic(active) + there.geometric(np.where(active, tension, 0.0)), held)
+
+    drawn = least(frame)
+    return any(least(frame.deformed(share * moved)) < FLATTENED * drawn for share in (0.25, 0.5, 0.75, 1.0))
 
 
 def judge(document: Document) -> Verdict:
@@ -454,8 +480,9 @@ def judge(document: Document) -> Verdict:
     return Verdict("path" if start < FAR else "undetermined", class_a, factor, start, slack)
 
 
-def basis_solution(frame: Frame, basis: np.ndarray, active: np.ndarray, heat: np.ndarray) -> np.ndarray:
-    """Return the thermal forces (tensions) of a structure with held joints."""
+def basis_solution(frame: Frame, basis: np.ndarray, active: np.ndarray,
+                   heat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the thermal displacement and forces (tensions) of a structure with held joints."""
     stiffness = basis.T @ frame.elastic(active) @ basis
     moved = basis @ np.linalg.lstsq(stiffness, -basis.T @ (frame.rows.T @ heat), rcond=1e-12)[0]
-    return np.asarray(heat + frame.stiffness * active * (frame.rows @ moved))
+    return moved, np.asarray(heat + frame.stiffness * active * (frame.rows @ moved))

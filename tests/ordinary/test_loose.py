@@ -40,3 +40,13 @@ def test_many_slack_joints_are_not_located_and_noted() -> None:
     moved_m = [run["displacement_m"] for run in (coarse, fine)]
     jumps_m = [moved[-1] - moved[0] for moved in moved_m]
     assert np.abs(jumps_m[1] - jumps_m[0]).max() < np.ptp(moved_m[1], axis=0).max() / 200
+
+
+@pytest.mark.parametrize(("family", "seed", "codes"), [
+    ("rib", 31000, ["changes_passed"]),  # two latches start to slip within one increment
+    ("k_truss", 31000, []),  # five latches stop together as the temperature turns: nothing is lost
+    ("walking", 31000, [])])
+def test_only_changes_that_are_passed_are_noted(family: str, seed: int, codes: list[str]) -> None:
+    run = sj.load(structures.make(family, seed).document).reduced()
+    found = [note.code for note in run.warnings if isinstance(note, Note)]
+    assert [code for code in found if code in ("changes_together", "changes_passed")] == codes

@@ -98,6 +98,18 @@ def test_stability_is_that_of_the_loaded_structure() -> None:
     assert judge(arch(1e-2, 400.0)).kind == "unstable"
 
 
+@pytest.mark.parametrize(("rise_m", "kind"), [(0.02, "undetermined"), (0.2, "path")])
+def test_heat_flattens_a_shallow_arch(rise_m: float, kind: str) -> None:
+    made = Sketch(2)
+    made.node("A", -1, 0, fixed="xy")
+    made.node("tip", 0, rise_m)
+    made.node("B", 1, 0, fixed="xy")
+    for foot in "AB":  # shrinks by 2.3e-3; the bars of the shallow arch are 2e-4 longer than its chord
+        made.bar(foot, "tip", **{**MODULUS, "thermal_expansion_per_K": -23.4e-6})
+    verdict = judge(finished(made))
+    assert (verdict.kind, verdict.class_a) == (kind, kind == "path")
+
+
 def test_a_bar_with_play_beside_others_is_slack() -> None:
     def panel(load_N: float, legs: int) -> Document:
         made = bracket(np.random.default_rng(1), 3)

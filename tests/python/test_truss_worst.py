@@ -14,7 +14,7 @@ import statejump as sj
 from conftest import Outcome
 from failures import failing
 from statejump.kinds.truss.generate.document import document, finished, node
-from statejump.kinds.truss.solve import solve
+from statejump.kinds.truss.solve import solve, whole_path
 from statejump.kinds.truss.worst.histories import histories
 from statejump.kinds.truss.worst.search import INCREMENTS, quick_path
 
@@ -145,9 +145,12 @@ def test_command_refuses_in_one_sentence(statejump: Any) -> None:
 
 def test_histories_in_which_many_joints_change_together_have_a_path() -> None:
     """Ten blocks between members that all go from one end of the range to the other: with given friction limits a path
-    always exists, also where steps without located events do not find it."""
+    always exists. Its end does not depend on located events, but for slip that reverses within one increment."""
     found = histories(sj.load("trusses/chain_10"), -80.0, 60.0, [])
-    for seed in (2, 4):
+    for seed in range(8):
         rng = np.random.default_rng(seed)
-        corners = np.where(rng.random((3, 2, len(found.variables))) < 0.5, -80.0, 60.0)
-        assert quick_path(found.truss(corners), INCREMENTS).complete
+        truss = found.truss(np.where(rng.random((3, 2, len(found.variables))) < 0.5, -80.0, 60.0))
+        quick, located = quick_path(truss, INCREMENTS), whole_path(truss, increments_per_branch=INCREMENTS)
+        ends = [path.cycle_ends["displacement_m"] for path in (quick, located)]
+        assert np.allclose(*ends, rtol=0, atol=0.02 * np.abs(ends[1]).max())
+        assert quick.solves < 2 * located.solves

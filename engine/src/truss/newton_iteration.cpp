@@ -155,6 +155,7 @@ class Newton::Iteration {
   const bool may_keep_;
   bool kept_;
   bool stale_ = true;  // no factors have been made yet
+  bool begins_anew_ = false;
   bool pivoted_ = false;
   bool looking_;
   std::chrono::steady_clock::time_point told_ = std::chrono::steady_clock::now();
@@ -265,7 +266,9 @@ Newton::Iteration::Turn Newton::Iteration::advance() {
   }
   if (total_ == 0) first_largest_ = at_.largest_force;
   if (is_astray()) return Turn::failed;
-  if (total_ > 0 && is_solved()) return finish();
+  // A restart replaces old factors, so it takes a step with new ones even if the equations hold:
+  // otherwise violated inequalities would request the same restart again.
+  if (total_ > 0 && !std::exchange(begins_anew_, false) && is_solved()) return finish();
   const Turn turn = linear_step();
   if (turn != Turn::linear_step) return turn;
   if (is_too_long()) return halve();
@@ -342,6 +345,7 @@ Newton::Iteration::Turn Newton::Iteration::start_anew() {
   settled_ = false;
   lengths_.clear();
   kept_ = false;
+  begins_anew_ = true;
   return Turn::iteration;
 }
 

@@ -224,6 +224,14 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
+  // Joints whose changes would be located if they did not repeat. Much shorter steps than an
+  // increment resolve them.
+  std::vector<int> passed;
+  if (options.locate_events && !locates && target - time > shortest_balanced) {
+    for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+      if (matters(i)) passed.push_back(i);
+    }
+  }
   std::vector<Event> events;
   std::set<int> idle;
   bool opened = false;
@@ -312,6 +320,10 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     return StepEnd::imprecise;
   }
   note(report);
+  // The order of several changes is unknown.
+  if (passed.size() > 1 && noted.count(NoteKind::not_located) == 0) {
+    note(NoteKind::not_located, target, passed);
+  }
   if (opened || is_slack) {
     is_slack =
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);

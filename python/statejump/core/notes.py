@@ -69,6 +69,10 @@ NOTES: dict[str, str] = {
         "many elements are slack {at}: from there the times at which their joints make and lose contact are resolved "
         "to one increment, and the jump may depend on it; compare with more reduced.increments_per_branch"
     ),
+    "changes_passed": (
+        "{named}: status changes again and again {at}: from there such changes are resolved to one increment, and slip "
+        "that turns round between two of them is not seen; compare with more reduced.increments_per_branch"
+    ),
     "free_spin": (
         "{named}: free to spin about its own axis, which moves no node and carries no moment; held by a soft spring"
     ),

@@ -80,7 +80,8 @@ enum class NoteKind : unsigned char {
   not_unique,   ///< Sticking joints constrain a displacement more than once: reactions are not
                 ///< unique.
   snap,         ///< Unstable slip within the play of joints moved the truss by `value` [m] at once.
-  not_located,  ///< So many joints are open that the times of their changes are not located.
+  not_located,  ///< So many joints are open that the times of their changes are not located. With
+                ///< joints: these changed within a step, because locating their changes failed.
   free_spin     ///< Beams are free to spin about their own axis; see SpinSpring.
 };
 

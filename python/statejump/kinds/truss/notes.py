@@ -29,7 +29,9 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> Note:
         return Note("large_start", value=note["value"], share=note["value"] / size_m)
     joints = [("mean", truss.means.of_constraint[name]) if name in truss.means.of_constraint else (kind, name)
               for kind, name in note["joints"]]
-    return Note(CODES[note["kind"]], named=_named(joints), at=at, value=note["value"],
+    # If many joints are open, none is named.
+    code = "changes_passed" if note["kind"] == "not_located" and joints else CODES[note["kind"]]
+    return Note(code, named=_named(joints), at=at, value=note["value"],
                 joints=tuple(joints), temperature_change_K=note["temperature_change_K"], time_s=note["time_s"])
 
 

@@ -331,7 +331,10 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
 
 def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
     """Return warnings about a path whose events are not located. If two joints change within one increment, their order
-    is unknown, and a third joint may have slipped back and forth without a trace."""
+    is unknown, and a third joint may have slipped back and forth without a trace. If events are located, the solver
+    itself notes those that it passes."""
+    if case.reduced_settings.locate_events:
+        return ()
     # Changes that affect the state are located even then, within 1.5 tolerances of a branch.
     located = 2 * case.reduced_settings.event_tolerance * float(path.states["time_s"][-1])
     found = path.events

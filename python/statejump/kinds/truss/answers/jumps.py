@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.engine_failures import EngineFailed
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.scales import scales
@@ -16,19 +15,12 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 def quick_path(truss: ResolvedTruss, increments_per_branch: int = 50, on_progress: OnProgress = lambda share: None,
                **more: Any) -> TrussPath:
-    """Return the path with only the events located that affect the state; ends of cycles are unchanged.
+    """Return the path with only the events located that affect the state.
 
-    Where the solver finds no path that way, because many joints change their status within one increment, all events
-    are located.
+    Ends of cycles are those of the path with all events located, unless slip reverses between two changes of status
+    within one increment.
     """
-    def found(locate_events: bool) -> TrussPath:
-        return whole_path(truss, on_progress, increments_per_branch=increments_per_branch, locate_events=locate_events,
-                          **more)
-
-    try:
-        return found(locate_events=False)
-    except EngineFailed:
-        return found(locate_events=True)
+    return whole_path(truss, on_progress, increments_per_branch=increments_per_branch, locate_events=False, **more)
 
 
 def node_jumps(found: TrussPath) -> np.ndarray:
