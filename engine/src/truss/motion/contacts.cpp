@@ -135,14 +135,28 @@ Contact& Contacts::add_friction(int joint, int column, double bound, double stif
 void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
   const Model& model = system_->model();
   const Bar& link = model.links[index(hinge.first_link)];
-  // A force on a lever of this radius represents the moment of the hinge, as in the rows of
-  // LatchHinge.
-  const double radius =
-      (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
+  add_hinge(
+      joint, first_column, hinge,
+      (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm());
+}
+
+template <class Type>
+void Contacts::add_hinge(int joint, int first_column, const HingeLaw<Type>& hinge, double radius) {
   springs_ = springs_ || hinge.stiffness > 0.0 || hinge.preload_moment != 0.0;
   if (!(hinge.friction_moment > 0.0)) return;
   add_friction(joint, first_column, hinge.friction_moment / radius,
                hinge.friction_stiffness / (radius * radius));
+}
+
+void Contacts::add(int joint, int first_column, const Hinge& hinge) {
+  const Model& model = system_->model();
+  add_hinge(joint, first_column, hinge, model.nodes[index(hinge.first)].arm);
+  for (int k = 1; k < hinge.frame(model).forces; ++k) turning_holds_.push_back(first_column + k);
+}
+
+void Contacts::add(int, int first_column, const RigidArm& arm) {
+  const int forces = arm.frame(system_->model()).forces;
+  for (int k = 0; k < forces; ++k) turning_holds_.push_back(first_column + k);
 }
 
 void Contacts::add(int joint, int first_column, const IwanJoint& iwan) {
@@ -229,6 +243,16 @@ double Contacts::slide_at_rest(const Contact& contact, const State& state,
   return output(model, state, contact.joint, key)[0];
 }
 
+template <class Type>
+double Contacts::hinge_friction(const Contact& contact, const State& state,
+                                const Type& hinge) const {
+  const auto told = [&](std::size_t which) {
+    return output(system_->model(), state, contact.joint, Type::outputs()[which].key)[0];
+  };
+  const double radius = hinge.friction_moment / contact.given_force;
+  return (told(1) - hinge.elastic_moment(told(0))) / radius;
+}
+
 double Contacts::friction_at_rest(const Contact& contact, const State& state,
                                   StartFriction start) const {
   if (start == StartFriction::frictionless) return 0.0;
@@ -236,10 +260,10 @@ double Contacts::friction_at_rest(const Contact& contact, const State& state,
   const Joint& joint = model.joints[index(contact.joint)];
   const auto told = [&](const char* key) { return output(model, state, contact.joint, key)[0]; };
   double force = 0.0;
-  if (const auto* hinge = std::get_if<LatchHinge>(&joint)) {
-    const double elastic = hinge->elastic_moment(told("hinge_rotation_rad"));
-    const double radius = hinge->friction_moment / contact.given_force;
-    force = (told("hinge_moment_N_m") - elastic) / radius;
+  if (const auto* latch = std::get_if<LatchHinge>(&joint)) {
+    force = hinge_friction(contact, state, *latch);
+  } else if (const auto* hinge = std::get_if<Hinge>(&joint)) {
+    force = hinge_friction(contact, state, *hinge);
   } else if (const auto* slider = std::get_if<Slider>(&joint);
              slider != nullptr && contact.sticks_rigidly()) {
     // A rigid stop supports the force beyond the limit.
@@ -284,6 +308,22 @@ void Contacts::begin(const State& state, StartFriction start) {
           std::max(contact.normal_sign * (friction - told("slider_force_N")), 0.0);
     }
   }
+}
+
+VectorXd Contacts::held_at_rest(const State& state) const {
+  const Model& model = system_->model();
+  VectorXd all = VectorXd::Zero(system_->unknowns());
+  int column = system_->displacements();
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    const Joint& joint = model.joints[index(i)];
+    const JointFrame frame = std::visit([&](const auto& one) { return one.frame(model); }, joint);
+    if (std::holds_alternative<RigidArm>(joint)) {
+      const Vector3d force = output(model, state, i, "rigid_force_N");
+      for (int k = 0; k < frame.forces; ++k) all[column + k] = -frame.axes.col(k).dot(force);
+    }
+    column += frame.forces;
+  }
+  return all(turning_holds_);
 }
 
 void Contacts::write_annuli(StepStart& to) const {

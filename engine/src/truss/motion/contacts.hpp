@@ -132,6 +132,9 @@ class Contacts {
   const std::vector<Contact>& all() const { return all_; }
   /// Columns of constraints between two nodes.
   const std::vector<int>& holds() const { return holds_; }
+  /// Columns of constraints whose directions rotate with the nodes: of rigid arms, and across the
+  /// axes of hinges.
+  const std::vector<int>& turning_holds() const { return turning_holds_; }
 
   /// Statuses in which all joints are closed, for the evaluation of closures and directions. Only a
   /// joint whose journal is exactly in the middle stays open, because it has no normal.
@@ -139,6 +142,9 @@ class Contacts {
   /// Initial contact forces from a quasi-static state.
   /// @param start how the truss reached that state
   void begin(const State& state, StartFriction start);
+  /// Forces of turning_holds() in a quasi-static state: those of rigid arms. Those of hinges, which
+  /// are not output, are zero [N].
+  VectorXd held_at_rest(const State& state) const;
   /// Computes the gaps at z and selects the active contacts of a step. The closures must be
   /// evaluated at the same displacements and time, with all joints closed and without forces.
   void measure(const VectorXd& z, double time, const StepStart& start, const VectorXd& closures,
@@ -161,7 +167,7 @@ class Contacts {
   /// Whether any contact is rigid along its normal, or sticks rigidly.
   bool hold_rigidly() const { return hold_rigidly_; }
   /// Whether joints have forces on nodes besides contact forces.
-  bool have_springs() const { return springs_; }
+  bool have_springs() const { return springs_ || !turning_holds_.empty(); }
 
   /// Writes statuses and elastic joint forces, whose energy the truss stores.
   void write(VectorXd& z, Statuses& statuses) const;
@@ -181,6 +187,11 @@ class Contacts {
   void add(int joint, int first_column, const ClearanceRevolute& revolute);
   void add(int joint, int first_column, const BallJoint& socketed);
   void add(int joint, int first_column, const LatchHinge& hinge);
+  void add(int joint, int first_column, const Hinge& hinge);
+  void add(int joint, int first_column, const RigidArm& arm);
+  /// Adds the friction of a hinge as a force on a lever of this radius, as in the rows of HingeLaw.
+  template <class Type>
+  void add_hinge(int joint, int first_column, const HingeLaw<Type>& hinge, double radius);
   /// One contact for every Jenkins element, all along one direction.
   void add(int joint, int first_column, const IwanJoint& iwan);
   /// Friction in a quasi-static state of a contact whose normal force is given [N].
@@ -195,6 +206,9 @@ class Contacts {
   Vector3d friction(const BallFriction& cone, bool with_dashpots) const;
   /// Writes the force of a ball joint at z.
   void write(const BallFriction& cone, bool with_dashpots, VectorXd& z) const;
+  /// Friction moment of a hinge in a quasi-static state [N m].
+  template <class Type>
+  double hinge_friction(const Contact& contact, const State& state, const Type& hinge) const;
   /// Rejects joints of a type that has no contacts in dynamics.
   /// @throws std::invalid_argument with the name of the type
   template <class Type>
@@ -207,6 +221,7 @@ class Contacts {
   std::vector<Contact> all_;
   std::vector<BallFriction> balls_;
   std::vector<int> holds_;
+  std::vector<int> turning_holds_;
   bool damped_ = false;
   bool slip_in_part_ = false;
   bool hold_rigidly_ = false;
