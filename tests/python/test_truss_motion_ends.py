@@ -11,6 +11,7 @@ from scipy.special import ellipk
 
 from test_truss_beam import clamp, frame
 from test_truss_beam_ends import hinged, rotation_matrix
+from test_truss_pad import pad_case
 
 from statejump.kinds.loading import parse_case
 from statejump.kinds.truss import motion, solve
@@ -143,3 +144,85 @@ def test_bodies_on_hinges_in_space_keep_their_energy_and_their_axes() -> None:
     assert energies[1] < 0.3 * energies[0] < 3e-3
     assert tilts[1] < 0.3 * tilts[0] < 1e-2
     assert np.abs(found["beam_hinge_rotation_rad"]).max(axis=0).min() > 0.5
+
+
+# ---------------------------------------------------------------- pads
+
+
+def test_block_slides_as_its_load_pushes_it() -> None:
+    """A mass of 2 kg on a frictional plane, pushed along (3, 4) with 5 N and pressed with 10 N: 1.5 m/s²."""
+    made = frame({**node("B", (0.0, 0.0, 0.0)), "mass_kg": 2.0, "force_N": [3.0, 4.0, -10.0]},
+                 change_K=1e-9, dimension=3, beam=[],
+                 pad=[{"name": "P", "nodes": ["B"], "normal": [0.0, 0.0, 2.0], "normal_stiffness_N_per_m": 1e6,
+                       "friction_coefficient": 0.2}])
+    found = moving(made, 0.5, 4000, start="drawn")
+    assert found["displacement_m"][-1, 0, :2] == pytest.approx(0.5 * 1.5 * 0.5**2 * np.array([0.6, 0.8]), rel=5e-3)
+    assert found["pad_friction_N"][-1, 0] == pytest.approx([-1.2, -1.6, 0.0], rel=2e-2, abs=1e-9)
+    heat = found["pad_dissipation_J"][-1, 0]
+    assert heat == pytest.approx(2.0 * 0.5 * 1.5 * 0.5**2, rel=5e-3)
+
+
+def test_block_bounces_on_its_pad() -> None:
+    """From 1 mm above the plane: the fall, half a swing on the spring, and the rise take as long as a closed form."""
+    mass, stiffness, height = 2.0, 1e6, 1e-3
+    rate = np.sqrt(stiffness / mass)
+    sunk = mass * GRAVITY / stiffness
+    fall_s, speed = np.sqrt(2 * height / GRAVITY), np.sqrt(2 * GRAVITY * height)
+    touch_s = (2 * np.pi - 2 * np.arctan2(speed / rate, sunk)) / rate
+    made = frame({**node("B", (0.0, 0.0), "x"), "mass_kg": mass, "force_N": [0.0, -mass * GRAVITY]},
+                 change_K=1e-9, beam=[],
+                 pad=[{"name": "P", "nodes": ["B"], "normal": [0.0, 1.0], "normal_stiffness_N_per_m": stiffness,
+                       "friction_coefficient": 0.3, "clearance_m": height}])
+    errors = []
+    for steps in (4000, 8000):
+        found = moving(made, 2 * fall_s + touch_s, steps, start="drawn")
+        pressed = found["pad_normal_force_N"][:, 0]
+        largest = mass * GRAVITY + np.sqrt((mass * GRAVITY) ** 2 + stiffness * mass * speed**2)
+        errors.append([abs(found["displacement_m"][-1, 0, 1]) / height, abs(pressed.max() / largest - 1)])
+        assert (pressed[: int(0.9 * fall_s / found["time_s"][-1] * steps)] == 0).all() and pressed[-1] == 0
+    # Elastic contact is integrated by implicit Euler: first order.
+    assert (np.array(errors[1]) < 0.6 * np.array(errors[0])).all() and max(errors[1]) < 0.05
+
+
+@pytest.mark.parametrize("way", [0.0, 0.4])
+def test_slowly_heated_pad_follows_its_path(way: float) -> None:
+    made = pad_case(way=way, normal_stiffness_N_per_m=1e8).origin.document
+    path = solve.path(parse_case(made).resolve()).states
+    found = moving({**made, "thermal": {**made["thermal"], "cycles": 1}}, 1.0, 2000, theta=1.0)
+    first = path["time_s"] <= 1.0
+    moved = path["displacement_m"][first, 1]
+    for axis in (0, 1):
+        at = np.interp(path["time_s"][first], found["time_s"], found["displacement_m"][:, 1, axis])
+        assert at == pytest.approx(moved[:, axis], abs=1e-3 * np.abs(moved).max())
+    assert np.linalg.norm(found["pad_friction_N"][-1, 0]) == pytest.approx(
+        np.linalg.norm(path["pad_friction_N"][first][-1, 0]), rel=1e-2)
+    assert found["pad_dissipation_J"][-1, 0] == pytest.approx(path["pad_dissipation_J"][first][-1, 0], rel=1e-2)
+
+
+def test_pad_in_motion_starts_with_the_friction_of_its_path() -> None:
+    """The load along the plane is below the friction limit: nothing moves."""
+    made = frame({**node("B", (0.0, 0.0, 0.0)), "mass_kg": 2.0, "force_N": [1.0, -1.0, -10.0]},
+                 change_K=1e-9, dimension=3, beam=[],
+                 pad=[{"name": "P", "nodes": ["B"], "normal": [0.0, 0.0, 2.0], "normal_stiffness_N_per_m": 1e6,
+                       "friction_coefficient": 0.2}])
+    found = moving(made, 0.1, 200)
+    assert np.ptp(found["displacement_m"][:, 0], axis=0).max() < 1e-12
+    assert found["pad_friction_N"][:, 0] == pytest.approx(np.tile([-1.0, 1.0, 0.0], (201, 1)), abs=1e-6)
+
+
+def test_energy_balances_while_the_slide_on_a_pad_turns() -> None:
+    """Two bars at right angles follow programs out of phase."""
+    made = pad_case(friction_coefficient=0.1, normal_stiffness_N_per_m=1e7).origin.document
+    late = {"name": "late", "shape": "table", "table_time_s": [0.0, 0.5, 1.0],
+            "table_temperature_change_K": [0.0, 50.0, 0.0]}
+    thermal = {"shape": "table", "table_time_s": [0.0, 0.25, 0.75, 1.0],
+               "table_temperature_change_K": [0.0, 50.0, -50.0, 0.0]}
+    made = {**made, "link": [made["link"][0], {**made["link"][1], "thermal_expansion_per_K": 2e-5, "program": "late"}],
+            "program": [late], "thermal": thermal, "output": {"samples_per_cycle": 500}}
+    off = []
+    for steps in (1000, 2000):
+        run = parse_case({**made, "motion": {"steps_per_cycle": steps, "theta": 1.0}}).reduced(dynamic=True)
+        heat = run["friction_dissipation_J"]
+        assert (np.diff(heat) >= -1e-9 * heat[-1]).all()
+        off.append(abs(run.summary["energy_residue_J"]) / heat[-1])
+    assert off[1] < 0.6 * off[0] < 0.02

@@ -40,11 +40,17 @@ JointStatus rubs(const Contact& contact, double bound) {
 }  // namespace
 
 double Contact::depth(double force) const {
+  if (is_linear()) return std::max(force, 0.0) / normal_stiffness;
   return is_elastic() && force > 0.0 ? numerics::hertz_depth(hertz_stiffness, force) : 0.0;
 }
 
 double Contact::force_at(double depth) const {
+  if (is_linear()) return normal_stiffness * std::max(depth, 0.0);
   return depth > 0.0 ? numerics::hertz_force(hertz_stiffness, depth) : 0.0;
+}
+
+double Contact::slope_at(double depth) const {
+  return is_linear() ? normal_stiffness : numerics::hertz_slope(hertz_stiffness, depth);
 }
 
 double Contact::tangential_compliance(double normal) const {
@@ -56,12 +62,11 @@ double Contact::tangential_compliance(double normal) const {
 Contact::Across Contact::across(double depth, double speed, double h) const {
   // Linear below the least depth, so that iterates without contact converge.
   const double at = std::max(depth, least_depth);
-  const double stiffness = numerics::hertz_slope(hertz_stiffness, at);
+  const double stiffness = slope_at(at);
   const double elastic = force_at(at) + stiffness * (depth - at);
   // The dashpot coefficient contains the fourth root of the depth, whose derivative is unbounded at
   // zero depth. So it is evaluated at the middle of the step.
-  const double dashpot =
-      damping * std::sqrt(numerics::hertz_slope(hertz_stiffness, std::max(-gap, 0.0)));
+  const double dashpot = damping == 0.0 ? 0.0 : damping * std::sqrt(slope_at(std::max(-gap, 0.0)));
   const double slope = h * stiffness + dashpot;
   return {elastic, elastic - dashpot * speed, slope, h * stiffness / slope};
 }
@@ -98,10 +103,11 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointFrame frame =
         std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
-    // A ball joint has bilateral constraints only while the start replaces it by a pin.
-    const bool is_ball = std::holds_alternative<BallJoint>(model.joints[index(i)]);
+    // Balls and pads have bilateral constraints only while the start replaces them by pins.
+    const bool lifts = std::holds_alternative<BallJoint>(model.joints[index(i)]) ||
+                       std::holds_alternative<Pad>(model.joints[index(i)]);
     const auto held =
-        is_ball ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
+        lifts ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
     for (int k = frame.forces - held; k < frame.forces; ++k) holds_.push_back(column + k);
     std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
     column += frame.forces;
@@ -205,19 +211,44 @@ void Contacts::add(int joint, int first_column, const BallJoint& socketed) {
   contact.hertz_stiffness = socketed.hertz_stiffness;
   contact.mindlin_stiffness = socketed.mindlin_stiffness;
   contact.least_depth = 1e-6 * socketed.radial_clearance;
-  contact.ball = static_cast<int>(balls_.size());
   BallFriction friction;
   friction.joint = &socketed;
+  friction.axes = socketed.frame(system_->model()).axes;
+  add_surface(contact, first_column, friction);
+}
+
+void Contacts::add(int joint, int first_column, const Pad& pad) {
+  Contact contact;
+  contact.joint = joint;
+  contact.first_column = contact.normal_column = first_column;
+  contact.tangential_column = first_column + 1;
+  contact.friction_coefficient = pad.friction_coefficient;
+  contact.normal_stiffness = pad.normal_stiffness;
+  contact.tangential_stiffness = pad.tangential_stiffness;
+  contact.turns_normal = false;
+  // The law is linear anyway; this is the rounding of its depth.
+  contact.least_depth = 1e-12 * system_->size();
+  BallFriction friction;
+  friction.pad = &pad;
+  friction.axes = pad.frame(system_->model()).axes;
+  friction.begin(Vector3d::Zero());
+  add_surface(contact, first_column, friction);
+}
+
+void Contacts::add_surface(Contact contact, int first_column, BallFriction friction) {
+  contact.ball = static_cast<int>(balls_.size());
   friction.place = all_.size();
   friction.first_column = first_column;
-  balls_.push_back(friction);
-  all_.push_back(contact);
-  Contact beside = made(joint, socketed);
+  Contact beside;
+  beside.joint = contact.joint;
+  beside.slips_in_part = contact.slips_in_part;
   beside.first_column = first_column;
   beside.tangential_column = first_column + 2;
   beside.friction_coefficient = 1.0;
   beside.ball = contact.ball;
   beside.beside = true;
+  balls_.push_back(friction);
+  all_.push_back(contact);
   all_.push_back(beside);
 }
 
@@ -225,6 +256,7 @@ Statuses Contacts::closed(const VectorXd& z, double time, const StepStart& start
   Statuses statuses = system_->all_stick();
   for (const Contact& contact : all_) {
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
+    if (!contact.turns_normal) continue;
     const Trial at = system_->trial(contact.joint, z, time, start, JointModel::friction, 1.0);
     const Vector3d apart = contact.ball < 0 ? eccentricity(at) : ball_normal(at);
     if (apart.squaredNorm() == 0.0) statuses[index(contact.joint)] = JointStatus::open;
@@ -296,7 +328,9 @@ void Contacts::begin(const State& state, StartFriction start) {
     const auto told = [&](const char* key) {
       return output(system_->model(), state, contact.joint, key)[0];
     };
-    if (contact.stop == JointStatus::open) {
+    if (contact.ball >= 0 && balls_[index(contact.ball)].pad != nullptr) {
+      begin_pad(contact, state, start);
+    } else if (contact.stop == JointStatus::open) {
       contact.normal_force = told(contact.ball < 0 ? "normal_force_N" : "ball_normal_force_N");
       contact.elastic_normal = contact.normal_force;
       if (!contact.slips_in_part) continue;
@@ -308,6 +342,19 @@ void Contacts::begin(const State& state, StartFriction start) {
           std::max(contact.normal_sign * (friction - told("slider_force_N")), 0.0);
     }
   }
+}
+
+void Contacts::begin_pad(Contact& contact, const State& state, StartFriction start) {
+  const auto told = [&](const char* key) {
+    return output(system_->model(), state, contact.joint, key);
+  };
+  contact.normal_force = contact.elastic_normal = told("pad_normal_force_N")[0];
+  if (start == StartFriction::frictionless || !(contact.normal_force > 0.0)) return;
+  const Vector3d friction = -told("pad_friction_N");
+  balls_[index(contact.ball)].begin(friction);
+  contact.friction_force = contact.elastic_friction = friction.norm();
+  contact.compliance = 1.0 / contact.tangential_stiffness;
+  all_[balls_[index(contact.ball)].place + 1].compliance = contact.compliance;
 }
 
 VectorXd Contacts::held_at_rest(const State& state) const {
@@ -352,7 +399,7 @@ void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
     } else if (contact.ball >= 0) {
       BallFriction& cone = balls_[index(contact.ball)];
       cone.measure(at);
-      const bool has_normal = cone.now.distance > 0.0;
+      const bool has_normal = cone.pad != nullptr || cone.now.distance > 0.0;
       contact.gap = has_normal ? cone.now.clearance - cone.now.distance : Contact::infinite;
       if (has_normal) contact.clearance_after = cone.now.clearance;
     } else {

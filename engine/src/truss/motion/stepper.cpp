@@ -110,7 +110,7 @@ bool Stepper::keeps_directions(const TimeStep& step) const {
   const VectorXd way = step.q - step.q_middle;
   for (const Contact& contact : contacts_.all()) {
     const bool is_round =
-        contact.normal_column >= 0 && contact.stop == JointStatus::open && !contact.beside;
+        contact.normal_column >= 0 && contact.stop == JointStatus::open && contact.turns_normal;
     if (!is_round || contact.gap == Contact::infinite) continue;
     const double gap = contacts_.gap_at(contact, z, step.to, state_.origin);
     const double off = std::abs(gap - forces_.gap_after(contact, way));
