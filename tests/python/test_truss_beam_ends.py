@@ -11,7 +11,6 @@ from test_truss_beam import SLENDER, STEEL, WARM, clamp, frame, of_hottest, stat
 
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss import motion
 from statejump.kinds.truss.generate.document import node
 
 EI = 6e7  # N m² of WARM
@@ -174,15 +173,6 @@ def test_rigid_body_on_bars_has_a_master_without_beams() -> None:
                  link=[{"name": name, "nodes": list(name), **bar} for name in ("AP", "BQ", "CP")])
     found = states(made)
     assert found["axial_force_N"][-1] == pytest.approx([-100.0, 200.0, 0.0], rel=1e-4, abs=1e-3)
-
-
-def test_motion_refuses_rigid_bodies_by_name() -> None:
-    made = frame(clamp("A", (0.0, 0.0)), node("B", (1.0, 0.0)), node("C", (1.0, 0.5)), change_K=1.0,
-                 beam=[{"nodes": ["A", "B"], "density_kg_per_m3": 2700.0, **SLENDER}],
-                 rigid=[{"name": "R", "master": "B", "nodes": ["C"]}])
-    with pytest.raises(StatejumpError) as caught:
-        motion.simulate(parse_case(made))
-    assert caught.value.code == "joint_not_in_motion" and "'R" in str(caught.value)
 
 
 def test_rigid_without_rotations_holds_displacements_only() -> None:

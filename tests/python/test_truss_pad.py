@@ -131,6 +131,7 @@ def test_wrong_keys_are_refused(keys: dict[str, Any], code: str) -> None:
 
 
 def test_models_without_pads_say_so() -> None:
+    keys = {"motion.scheme": "regularised", "motion.masses": "lumped", "reduced.sticking": "elastic"}
     with pytest.raises(StatejumpError) as refused:
-        pad_case().reduced(dynamic=True)
-    assert refused.value.code == "joint_not_in_motion"
+        pad_case().changed(keys).reduced(dynamic=True)
+    assert refused.value.code == "regularised_not_supported"

@@ -21,7 +21,25 @@ Vector3d ball_normal(const Trial& at) {
   return distance > 0.0 ? Vector3d(apart / distance) : Vector3d::Zero();
 }
 
+void BallFriction::begin(const Vector3d& friction) {
+  now.normal = -pad->normal;
+  memory.friction = friction;
+  along = now.normal.unitOrthogonal();
+  point(friction);
+}
+
 void BallFriction::measure(const Trial& at) {
+  if (pad != nullptr) {
+    now.normal = -pad->normal;
+    now.clearance = pad->clearance;
+    now.distance = now.normal.dot(at.moved[0] - at.moved[1]);
+    kept = memory.friction;
+    const Vector3d before = along;
+    along = now.normal.unitOrthogonal();
+    point(before);
+    point(kept);
+    return;
+  }
   now = state_of(*joint, at);
   const BallSlide<double> moved = ball_slide(now, memory);
   kept = moved.kept;
@@ -54,11 +72,9 @@ void BallFriction::remember(const Vector3d& friction) {
 void Contacts::direct(const BallFriction& cone) {
   Contact& contact = all_[cone.place];
   Contact& beside = all_[cone.place + 1];
-  const Model& model = system_->model();
-  const Matrix3d axes = cone.joint->frame(model).axes;
-  contact.normal_shares = axes.transpose() * cone.now.normal;
-  contact.tangential_shares = axes.transpose() * cone.along;
-  beside.tangential_shares = axes.transpose() * cone.across();
+  contact.normal_shares = cone.axes.transpose() * cone.now.normal;
+  contact.tangential_shares = cone.axes.transpose() * cone.along;
+  beside.tangential_shares = cone.axes.transpose() * cone.across();
   contact.elastic_friction = cone.along.dot(cone.kept);
   beside.elastic_friction = cone.across().dot(cone.kept);
 }
@@ -73,6 +89,12 @@ Vector3d Contacts::friction(const BallFriction& cone, bool with_dashpots) const 
 
 void Contacts::write(const BallFriction& cone, bool with_dashpots, VectorXd& z) const {
   const Contact& contact = all_[cone.place];
+  const double pressed = with_dashpots ? contact.normal_force : contact.elastic_normal;
+  if (cone.pad != nullptr) {
+    z.segment<3>(cone.first_column) =
+        cone.axes.transpose() * (pressed * cone.now.normal + friction(cone, with_dashpots));
+    return;
+  }
   const Model& model = system_->model();
   const BallJoint& joint = *cone.joint;
   const Vector3d drawn =
@@ -83,12 +105,12 @@ void Contacts::write(const BallFriction& cone, bool with_dashpots, VectorXd& z) 
   if (!apart.isZero(0.0)) {
     // Rotated from the middle of the step to its end.
     const Vector3d normal = apart.normalized();
-    force = (with_dashpots ? contact.normal_force : contact.elastic_normal) * normal;
+    force = pressed * normal;
     if (!cone.now.normal.isZero(0.0)) {
       force += carried<double>(friction(cone, with_dashpots), cone.now.normal, normal);
     }
   }
-  z.segment<3>(cone.first_column) = joint.frame(model).axes.transpose() * force;
+  z.segment<3>(cone.first_column) = cone.axes.transpose() * force;
 }
 
 }  // namespace statejump::truss::detail

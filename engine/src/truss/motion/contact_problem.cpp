@@ -83,24 +83,34 @@ Eigen::Index worst_contact(const Problem& problem, const VectorXd& impulses) {
 void ContactProblem::solve(TimeStep& step, StepContacts& contacts) {
   const System& system = forces_.system();
   contacts.delassus = matrix_.delassus(step, contacts);
-  const Eigen::SparseMatrix<double>& columns = matrix_.constraints().columns();
+  VelocityConstraints& constraints = matrix_.constraints();
+  const Eigen::SparseMatrix<double>& columns = constraints.columns();
   const Eigen::Index n = forces_.state().q.size();
   VectorXd& held = step.held;
+  held = VectorXd::Zero(columns.cols());
+  const double drift = forces_.rounding_at_middle(step) / step.h;
   for (int k = 0;; ++k) {
     const VectorXd residual = forces_.move(step);
     if (!residual.allFinite()) fail_step(system, FailureKind::not_finite, step.to, nullptr);
-    if (k > 0 && forces_.balanced(step, residual, columns, contacts, false)) return;
+    constraints.follow();
+    const VectorXd pushed = columns.cols() > 0 ? constraints.push(step) : VectorXd();
+    const VectorXd lack = constraints.lack(step);
+    if (k > 0 && forces_.balanced(step, residual, pushed, contacts, false) &&
+        constraints.met(step, lack, drift)) {
+      return;
+    }
     if (k == options_.most_iterations) {
       fail_step(system, FailureKind::not_converged, step.to, nullptr);
     }
     VectorXd right(n + columns.cols());
     right.head(n) = -residual;
     if (columns.cols() > 0) {
-      right.tail(columns.cols()) = matrix_.constraints().speeds() - columns.transpose() * step.v;
+      right.head(n) -= pushed;
+      right.tail(columns.cols()) = lack;
     }
     const VectorXd correction = matrix_.solve_bodies(right);
     const VectorXd free = step.v + correction.head(n);
-    held = correction.tail(columns.cols());
+    held += correction.tail(columns.cols());
     step.v = free;
     if (contacts.count() > 0) {
       solve_contacts(step, free, k == 0, contacts);

@@ -40,11 +40,17 @@ JointStatus rubs(const Contact& contact, double bound) {
 }  // namespace
 
 double Contact::depth(double force) const {
+  if (is_linear()) return std::max(force, 0.0) / normal_stiffness;
   return is_elastic() && force > 0.0 ? numerics::hertz_depth(hertz_stiffness, force) : 0.0;
 }
 
 double Contact::force_at(double depth) const {
+  if (is_linear()) return normal_stiffness * std::max(depth, 0.0);
   return depth > 0.0 ? numerics::hertz_force(hertz_stiffness, depth) : 0.0;
+}
+
+double Contact::slope_at(double depth) const {
+  return is_linear() ? normal_stiffness : numerics::hertz_slope(hertz_stiffness, depth);
 }
 
 double Contact::tangential_compliance(double normal) const {
@@ -56,12 +62,11 @@ double Contact::tangential_compliance(double normal) const {
 Contact::Across Contact::across(double depth, double speed, double h) const {
   // Linear below the least depth, so that iterates without contact converge.
   const double at = std::max(depth, least_depth);
-  const double stiffness = numerics::hertz_slope(hertz_stiffness, at);
+  const double stiffness = slope_at(at);
   const double elastic = force_at(at) + stiffness * (depth - at);
   // The dashpot coefficient contains the fourth root of the depth, whose derivative is unbounded at
   // zero depth. So it is evaluated at the middle of the step.
-  const double dashpot =
-      damping * std::sqrt(numerics::hertz_slope(hertz_stiffness, std::max(-gap, 0.0)));
+  const double dashpot = damping == 0.0 ? 0.0 : damping * std::sqrt(slope_at(std::max(-gap, 0.0)));
   const double slope = h * stiffness + dashpot;
   return {elastic, elastic - dashpot * speed, slope, h * stiffness / slope};
 }
@@ -98,10 +103,11 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointFrame frame =
         std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
-    // A ball joint has bilateral constraints only while the start replaces it by a pin.
-    const bool is_ball = std::holds_alternative<BallJoint>(model.joints[index(i)]);
+    // Balls and pads have bilateral constraints only while the start replaces them by pins.
+    const bool lifts = std::holds_alternative<BallJoint>(model.joints[index(i)]) ||
+                       std::holds_alternative<Pad>(model.joints[index(i)]);
     const auto held =
-        is_ball ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
+        lifts ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
     for (int k = frame.forces - held; k < frame.forces; ++k) holds_.push_back(column + k);
     std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
     column += frame.forces;
@@ -135,14 +141,28 @@ Contact& Contacts::add_friction(int joint, int column, double bound, double stif
 void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
   const Model& model = system_->model();
   const Bar& link = model.links[index(hinge.first_link)];
-  // A force on a lever of this radius represents the moment of the hinge, as in the rows of
-  // LatchHinge.
-  const double radius =
-      (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
+  add_hinge(
+      joint, first_column, hinge,
+      (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm());
+}
+
+template <class Type>
+void Contacts::add_hinge(int joint, int first_column, const HingeLaw<Type>& hinge, double radius) {
   springs_ = springs_ || hinge.stiffness > 0.0 || hinge.preload_moment != 0.0;
   if (!(hinge.friction_moment > 0.0)) return;
   add_friction(joint, first_column, hinge.friction_moment / radius,
                hinge.friction_stiffness / (radius * radius));
+}
+
+void Contacts::add(int joint, int first_column, const Hinge& hinge) {
+  const Model& model = system_->model();
+  add_hinge(joint, first_column, hinge, model.nodes[index(hinge.first)].arm);
+  for (int k = 1; k < hinge.frame(model).forces; ++k) turning_holds_.push_back(first_column + k);
+}
+
+void Contacts::add(int, int first_column, const RigidArm& arm) {
+  const int forces = arm.frame(system_->model()).forces;
+  for (int k = 0; k < forces; ++k) turning_holds_.push_back(first_column + k);
 }
 
 void Contacts::add(int joint, int first_column, const IwanJoint& iwan) {
@@ -191,19 +211,44 @@ void Contacts::add(int joint, int first_column, const BallJoint& socketed) {
   contact.hertz_stiffness = socketed.hertz_stiffness;
   contact.mindlin_stiffness = socketed.mindlin_stiffness;
   contact.least_depth = 1e-6 * socketed.radial_clearance;
-  contact.ball = static_cast<int>(balls_.size());
   BallFriction friction;
   friction.joint = &socketed;
+  friction.axes = socketed.frame(system_->model()).axes;
+  add_surface(contact, first_column, friction);
+}
+
+void Contacts::add(int joint, int first_column, const Pad& pad) {
+  Contact contact;
+  contact.joint = joint;
+  contact.first_column = contact.normal_column = first_column;
+  contact.tangential_column = first_column + 1;
+  contact.friction_coefficient = pad.friction_coefficient;
+  contact.normal_stiffness = pad.normal_stiffness;
+  contact.tangential_stiffness = pad.tangential_stiffness;
+  contact.turns_normal = false;
+  // The law is linear anyway; this is the rounding of its depth.
+  contact.least_depth = 1e-12 * system_->size();
+  BallFriction friction;
+  friction.pad = &pad;
+  friction.axes = pad.frame(system_->model()).axes;
+  friction.begin(Vector3d::Zero());
+  add_surface(contact, first_column, friction);
+}
+
+void Contacts::add_surface(Contact contact, int first_column, BallFriction friction) {
+  contact.ball = static_cast<int>(balls_.size());
   friction.place = all_.size();
   friction.first_column = first_column;
-  balls_.push_back(friction);
-  all_.push_back(contact);
-  Contact beside = made(joint, socketed);
+  Contact beside;
+  beside.joint = contact.joint;
+  beside.slips_in_part = contact.slips_in_part;
   beside.first_column = first_column;
   beside.tangential_column = first_column + 2;
   beside.friction_coefficient = 1.0;
   beside.ball = contact.ball;
   beside.beside = true;
+  balls_.push_back(friction);
+  all_.push_back(contact);
   all_.push_back(beside);
 }
 
@@ -211,6 +256,7 @@ Statuses Contacts::closed(const VectorXd& z, double time, const StepStart& start
   Statuses statuses = system_->all_stick();
   for (const Contact& contact : all_) {
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
+    if (!contact.turns_normal) continue;
     const Trial at = system_->trial(contact.joint, z, time, start, JointModel::friction, 1.0);
     const Vector3d apart = contact.ball < 0 ? eccentricity(at) : ball_normal(at);
     if (apart.squaredNorm() == 0.0) statuses[index(contact.joint)] = JointStatus::open;
@@ -229,6 +275,16 @@ double Contacts::slide_at_rest(const Contact& contact, const State& state,
   return output(model, state, contact.joint, key)[0];
 }
 
+template <class Type>
+double Contacts::hinge_friction(const Contact& contact, const State& state,
+                                const Type& hinge) const {
+  const auto told = [&](std::size_t which) {
+    return output(system_->model(), state, contact.joint, Type::outputs()[which].key)[0];
+  };
+  const double radius = hinge.friction_moment / contact.given_force;
+  return (told(1) - hinge.elastic_moment(told(0))) / radius;
+}
+
 double Contacts::friction_at_rest(const Contact& contact, const State& state,
                                   StartFriction start) const {
   if (start == StartFriction::frictionless) return 0.0;
@@ -236,10 +292,10 @@ double Contacts::friction_at_rest(const Contact& contact, const State& state,
   const Joint& joint = model.joints[index(contact.joint)];
   const auto told = [&](const char* key) { return output(model, state, contact.joint, key)[0]; };
   double force = 0.0;
-  if (const auto* hinge = std::get_if<LatchHinge>(&joint)) {
-    const double elastic = hinge->elastic_moment(told("hinge_rotation_rad"));
-    const double radius = hinge->friction_moment / contact.given_force;
-    force = (told("hinge_moment_N_m") - elastic) / radius;
+  if (const auto* latch = std::get_if<LatchHinge>(&joint)) {
+    force = hinge_friction(contact, state, *latch);
+  } else if (const auto* hinge = std::get_if<Hinge>(&joint)) {
+    force = hinge_friction(contact, state, *hinge);
   } else if (const auto* slider = std::get_if<Slider>(&joint);
              slider != nullptr && contact.sticks_rigidly()) {
     // A rigid stop supports the force beyond the limit.
@@ -272,7 +328,9 @@ void Contacts::begin(const State& state, StartFriction start) {
     const auto told = [&](const char* key) {
       return output(system_->model(), state, contact.joint, key)[0];
     };
-    if (contact.stop == JointStatus::open) {
+    if (contact.ball >= 0 && balls_[index(contact.ball)].pad != nullptr) {
+      begin_pad(contact, state, start);
+    } else if (contact.stop == JointStatus::open) {
       contact.normal_force = told(contact.ball < 0 ? "normal_force_N" : "ball_normal_force_N");
       contact.elastic_normal = contact.normal_force;
       if (!contact.slips_in_part) continue;
@@ -284,6 +342,35 @@ void Contacts::begin(const State& state, StartFriction start) {
           std::max(contact.normal_sign * (friction - told("slider_force_N")), 0.0);
     }
   }
+}
+
+void Contacts::begin_pad(Contact& contact, const State& state, StartFriction start) {
+  const auto told = [&](const char* key) {
+    return output(system_->model(), state, contact.joint, key);
+  };
+  contact.normal_force = contact.elastic_normal = told("pad_normal_force_N")[0];
+  if (start == StartFriction::frictionless || !(contact.normal_force > 0.0)) return;
+  const Vector3d friction = -told("pad_friction_N");
+  balls_[index(contact.ball)].begin(friction);
+  contact.friction_force = contact.elastic_friction = friction.norm();
+  contact.compliance = 1.0 / contact.tangential_stiffness;
+  all_[balls_[index(contact.ball)].place + 1].compliance = contact.compliance;
+}
+
+VectorXd Contacts::held_at_rest(const State& state) const {
+  const Model& model = system_->model();
+  VectorXd all = VectorXd::Zero(system_->unknowns());
+  int column = system_->displacements();
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    const Joint& joint = model.joints[index(i)];
+    const JointFrame frame = std::visit([&](const auto& one) { return one.frame(model); }, joint);
+    if (std::holds_alternative<RigidArm>(joint)) {
+      const Vector3d force = output(model, state, i, "rigid_force_N");
+      for (int k = 0; k < frame.forces; ++k) all[column + k] = -frame.axes.col(k).dot(force);
+    }
+    column += frame.forces;
+  }
+  return all(turning_holds_);
 }
 
 void Contacts::write_annuli(StepStart& to) const {
@@ -312,7 +399,7 @@ void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
     } else if (contact.ball >= 0) {
       BallFriction& cone = balls_[index(contact.ball)];
       cone.measure(at);
-      const bool has_normal = cone.now.distance > 0.0;
+      const bool has_normal = cone.pad != nullptr || cone.now.distance > 0.0;
       contact.gap = has_normal ? cone.now.clearance - cone.now.distance : Contact::infinite;
       if (has_normal) contact.clearance_after = cone.now.clearance;
     } else {

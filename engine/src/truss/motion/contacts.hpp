@@ -29,12 +29,14 @@ struct Contact {
   double given_force = 0.0;                ///< [N], if there is no normal column.
   JointStatus stop = JointStatus::open;    ///< Which stop of a slider; open: none.
   double hertz_stiffness = infinite;       ///< K [N/m^1.5]
+  double normal_stiffness = infinite;      ///< k_n of a pad [N/m].
   double mindlin_stiffness = infinite;     ///< 8 G* √R [N/m^1.5]
   double tangential_stiffness = infinite;  ///< Of a slider [N/m].
   double damping = 0.0;                    ///< 2 ζ √m of its dashpots c = 2 ζ √(m k) [√kg].
   double least_depth = 0.0;                ///< The elastic laws are linear below it [m].
-  int ball = -1;                           ///< Index of its ball; −1: planar contact.
-  bool beside = false;         ///< Transverse contact of a ball; follows its first contact.
+  int ball = -1;                           ///< Index of its ball or pad; −1: planar contact.
+  bool beside = false;         ///< Transverse contact of a ball or pad; follows its first contact.
+  bool turns_normal = true;    ///< Whether the normal rotates as the contact slides.
   bool slips_in_part = false;  ///< Has partial slip, see SlipAnnuli.
 
   // Memory.
@@ -61,7 +63,9 @@ struct Contact {
   Columns normal_columns() const { return columns(normal_column, normal_shares); }
   Columns tangential_columns() const { return columns(tangential_column, tangential_shares); }
 
-  bool is_elastic() const { return hertz_stiffness < infinite; }
+  bool is_elastic() const { return hertz_stiffness < infinite || is_linear(); }
+  /// Whether its normal force is proportional to its depth.
+  bool is_linear() const { return normal_stiffness < infinite; }
   /// Whether it closes its gap without deflection.
   bool is_rigid() const { return normal_column >= 0 && !is_elastic(); }
   /// Whether it sticks without deflection.
@@ -71,6 +75,7 @@ struct Contact {
   }
   double depth(double force) const;
   double force_at(double depth) const;
+  double slope_at(double depth) const;  ///< [N/m]
 
   /// Result of the normal law at the end of a step: normal force and its slope.
   struct Across {
@@ -106,7 +111,9 @@ struct Contact {
   /// Whether it sticks under these forces.
   bool sticks(double normal, double tangential) const;
   /// Energies stored by the normal and the tangential law [J].
-  double normal_energy() const { return 0.4 * elastic_normal * depth(elastic_normal); }
+  double normal_energy() const {
+    return (is_linear() ? 0.5 : 0.4) * elastic_normal * depth(elastic_normal);
+  }
   double tangential_energy() const {
     return slips_in_part ? annuli.energy : 0.5 * compliance * elastic_friction * elastic_friction;
   }
@@ -132,6 +139,9 @@ class Contacts {
   const std::vector<Contact>& all() const { return all_; }
   /// Columns of constraints between two nodes.
   const std::vector<int>& holds() const { return holds_; }
+  /// Columns of constraints whose directions rotate with the nodes: of rigid arms, and across the
+  /// axes of hinges.
+  const std::vector<int>& turning_holds() const { return turning_holds_; }
 
   /// Statuses in which all joints are closed, for the evaluation of closures and directions. Only a
   /// joint whose journal is exactly in the middle stays open, because it has no normal.
@@ -139,6 +149,9 @@ class Contacts {
   /// Initial contact forces from a quasi-static state.
   /// @param start how the truss reached that state
   void begin(const State& state, StartFriction start);
+  /// Forces of turning_holds() in a quasi-static state: those of rigid arms. Those of hinges, which
+  /// are not output, are zero [N].
+  VectorXd held_at_rest(const State& state) const;
   /// Computes the gaps at z and selects the active contacts of a step. The closures must be
   /// evaluated at the same displacements and time, with all joints closed and without forces.
   void measure(const VectorXd& z, double time, const StepStart& start, const VectorXd& closures,
@@ -161,7 +174,7 @@ class Contacts {
   /// Whether any contact is rigid along its normal, or sticks rigidly.
   bool hold_rigidly() const { return hold_rigidly_; }
   /// Whether joints have forces on nodes besides contact forces.
-  bool have_springs() const { return springs_; }
+  bool have_springs() const { return springs_ || !turning_holds_.empty(); }
 
   /// Writes statuses and elastic joint forces, whose energy the truss stores.
   void write(VectorXd& z, Statuses& statuses) const;
@@ -180,9 +193,17 @@ class Contacts {
   void add(int joint, int first_column, const Slider& slider);
   void add(int joint, int first_column, const ClearanceRevolute& revolute);
   void add(int joint, int first_column, const BallJoint& socketed);
+  void add(int joint, int first_column, const Pad& pad);
   void add(int joint, int first_column, const LatchHinge& hinge);
+  void add(int joint, int first_column, const Hinge& hinge);
+  void add(int joint, int first_column, const RigidArm& arm);
+  /// Adds the friction of a hinge as a force on a lever of this radius, as in the rows of HingeLaw.
+  template <class Type>
+  void add_hinge(int joint, int first_column, const HingeLaw<Type>& hinge, double radius);
   /// One contact for every Jenkins element, all along one direction.
   void add(int joint, int first_column, const IwanJoint& iwan);
+  /// Sets the forces of a pad to those of a quasi-static state.
+  void begin_pad(Contact& contact, const State& state, StartFriction start);
   /// Friction in a quasi-static state of a contact whose normal force is given [N].
   double friction_at_rest(const Contact& contact, const State& state, StartFriction start) const;
   /// Deflection of a slider's contact in a quasi-static state [m], measured from the position of
@@ -191,10 +212,15 @@ class Contacts {
   /// Adds a contact with dry friction of limit `bound` [N] in series with a spring of the given
   /// stiffness [N/m].
   Contact& add_friction(int joint, int column, double bound, double stiffness);
-  /// Friction vector of a ball joint [N], from its two contacts. Dashpot forces are optional.
+  /// Appends the contact of a ball or pad, and its transverse contact.
+  void add_surface(Contact contact, int first_column, BallFriction friction);
+  /// Friction vector of a ball or pad [N], from its two contacts. Dashpot forces are optional.
   Vector3d friction(const BallFriction& cone, bool with_dashpots) const;
-  /// Writes the force of a ball joint at z.
+  /// Writes the force of a ball or pad at z.
   void write(const BallFriction& cone, bool with_dashpots, VectorXd& z) const;
+  /// Friction moment of a hinge in a quasi-static state [N m].
+  template <class Type>
+  double hinge_friction(const Contact& contact, const State& state, const Type& hinge) const;
   /// Rejects joints of a type that has no contacts in dynamics.
   /// @throws std::invalid_argument with the name of the type
   template <class Type>
@@ -207,6 +233,7 @@ class Contacts {
   std::vector<Contact> all_;
   std::vector<BallFriction> balls_;
   std::vector<int> holds_;
+  std::vector<int> turning_holds_;
   bool damped_ = false;
   bool slip_in_part_ = false;
   bool hold_rigidly_ = false;

@@ -38,7 +38,8 @@ std::unique_ptr<SmoothStepper> SmoothStepper::of(const System& system, const Bod
                                                  const MotionOptions& options, int stages) {
   if (element_count(system.model()) != system.model().links.size()) return {};
   const Contacts contacts(system, bodies.joint_damping());
-  if (!contacts.holds().empty() || !options.drives.empty() || contacts.slip_in_part()) return {};
+  if (!contacts.holds().empty() || !contacts.turning_holds().empty()) return {};
+  if (!options.drives.empty() || contacts.slip_in_part()) return {};
   std::optional<std::vector<FrictionElement>> found = friction_elements(system, contacts);
   if (!found || found->empty() || found->size() > most_contacts) return {};
   std::unique_ptr<SmoothStepper> made(

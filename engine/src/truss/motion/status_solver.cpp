@@ -80,23 +80,21 @@ bool StatusSolver::solve(const ContactStatuses& statuses, TimeStep& step, StepCo
 StatusSolver::Residual StatusSolver::residual(const StatusFactors& on, TimeStep& step,
                                               const StepContacts& contacts, double drift) {
   const VectorXd& v_before = forces_.state().v;
-  const Eigen::SparseMatrix<double>& columns = matrix_.constraints().columns();
-  const VectorXd& speeds = matrix_.constraints().speeds();
   const Eigen::Index n = v_before.size();
-  const Eigen::Index held = columns.cols();
-  Residual found{VectorXd(n + held + contacts.impulses.size()), forces_.move(step), true};
+  const Eigen::Index held = matrix_.constraints().count();
+  Residual found{VectorXd(n + held + contacts.impulses.size()), forces_.move(step), {}, true};
+  VelocityConstraints& constraints = matrix_.constraints();
+  constraints.follow();
   VectorXd& right = found.right;
   right.head(n) = contacts.directions * contacts.impulses - found.momentum;
   const double before = v_before.size() == 0 ? 0.0 : v_before.cwiseAbs().maxCoeff();
   const double speed = std::max(step.v.cwiseAbs().maxCoeff(), before);
   const double bound = allowance * speed + drift;
   if (held > 0) {
-    right.head(n) -= columns * step.held;
-    right.segment(n, held) = speeds - columns.transpose() * step.v;
-    const VectorXd sizes = columns.cwiseAbs().transpose() * step.v.cwiseAbs();
-    found.on_laws = ((right.segment(n, held).array().abs() <=
-                      allowance * (sizes.array() + speeds.array().abs()) + on.scale * drift))
-                        .all();
+    found.held = constraints.push(step);
+    right.head(n) -= found.held;
+    right.segment(n, held) = constraints.lack(step);
+    found.on_laws = constraints.met(step, right.segment(n, held), drift);
   }
   for (std::size_t j = 0; j < on.statuses.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
@@ -129,16 +127,15 @@ std::optional<int> StatusSolver::iterate(StatusFactors& on, TimeStep& step, Step
   const bool downhill = tangents == Tangents::downhill;
   const bool renews = downhill || tangents == Tangents::anew;
   if (renews && !matrix_.factorize(on, step, contacts)) return {};
-  const Eigen::SparseMatrix<double>& columns = matrix_.constraints().columns();
   const Eigen::Index n = forces_.state().q.size();
-  const Eigen::Index held = columns.cols();
+  const Eigen::Index held = matrix_.constraints().count();
   const double drift = forces_.rounding_at_middle(step) / step.h;
   step.held = VectorXd::Zero(held);
   const int most = renews || step.is_definite ? most_tangents : most_iterations;
   double last = 0.0;
   Residual lack = residual(on, step, contacts, drift);
   for (int k = 0; k <= most; ++k) {
-    if (k > 0 && lack.on_laws && forces_.balanced(step, lack.momentum, columns, contacts, true)) {
+    if (k > 0 && lack.on_laws && forces_.balanced(step, lack.momentum, lack.held, contacts, true)) {
       return k;
     }
     if (renews && k > 0 && !matrix_.factorize(on, step, contacts)) break;

@@ -37,6 +37,7 @@ class StatusSolver {
   struct Residual {
     VectorXd right;
     VectorXd momentum;  ///< Residual of the momentum balance without impulses.
+    VectorXd held;      ///< Impulses of the velocity constraints; empty without constraints.
     /// Whether constraints, and contacts that are not elastic, satisfy their laws.
     bool on_laws = false;
   };

@@ -37,10 +37,23 @@ void StepForces::evaluate_contacts(const VectorXd& q, double time) {
                           joints_);
 }
 
-const Assembly& StepForces::evaluate_springs(const VectorXd& q, double time) {
-  const VectorXd z = unknowns_at(q);
+void StepForces::evaluate_springs_at(const VectorXd& z, double time) {
   system_.evaluate_joints(z, time, state_.origin, contacts_.closed(z, time, state_.origin),
                           springs_);
+}
+
+const Assembly& StepForces::evaluate_springs(const VectorXd& q, double time) {
+  evaluate_springs_at(unknowns_at(q), time);
+  return springs_;
+}
+
+const Assembly& StepForces::evaluate_springs_with_holds(const VectorXd& q, double time) {
+  VectorXd z = unknowns_at(q);
+  const std::vector<int>& turning = contacts_.turning_holds();
+  for (std::size_t k = 0; k < turning.size(); ++k) {
+    z[turning[k]] = state_.held[static_cast<Eigen::Index>(k)];
+  }
+  evaluate_springs_at(z, time);
   return springs_;
 }
 
@@ -93,8 +106,7 @@ VectorXd StepForces::move(TimeStep& step) {
          step.h * (theta * now + (1.0 - theta) * step.force_before);
 }
 
-bool StepForces::balanced(const TimeStep& step, const VectorXd& residual,
-                          const Eigen::SparseMatrix<double>& constraints,
+bool StepForces::balanced(const TimeStep& step, const VectorXd& residual, const VectorXd& held,
                           const StepContacts& contacts, bool on_statuses) const {
   VectorXd left = residual;
   double largest = step.h * forces_.largest_force + (bodies_.mass() * step.v).cwiseAbs().maxCoeff();
@@ -103,7 +115,10 @@ bool StepForces::balanced(const TimeStep& step, const VectorXd& residual,
     largest = std::max(largest, pushed.cwiseAbs().maxCoeff());
     left -= pushed;
   }
-  if (step.held.size() > 0) left += constraints * step.held;
+  if (held.size() > 0) {
+    largest = std::max(largest, held.cwiseAbs().maxCoeff());
+    left += held;
+  }
   VectorXd z = state_.z;
   z.head(step.q.size()) = step.q;
   const double bound = balance * largest + step.h * system_.force_rounding(z);

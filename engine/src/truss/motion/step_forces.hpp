@@ -44,6 +44,12 @@ class StepForces {
   const Assembly& joints() const { return joints_; }
   /// Forces of joints other than contact forces.
   const Assembly& evaluate_springs(const VectorXd& q, double time);
+  /// The same, with the constraint forces of the last step; their stiffness is that of directions
+  /// that rotate.
+  const Assembly& evaluate_springs_with_holds(const VectorXd& q, double time);
+  /// Result of the last evaluate_springs(), which move() calls for trusses with rotating
+  /// constraints.
+  const Assembly& springs() const { return springs_; }
   const Assembly& evaluate_elements(const VectorXd& q, double time);
 
   /// Gap of a contact after a displacement, extrapolated linearly along the directions of the step
@@ -59,15 +65,15 @@ class StepForces {
   /// Whether momentum balances, and whether elastic contacts satisfy their laws and not only the
   /// tangents.
   /// @param residual result of move()
-  /// @param constraints matrix B, see VelocityConstraints
+  /// @param held impulses of the velocity constraints on the independent displacements [N s]
   /// @param on_statuses true: contacts in tension, and open contacts with penetration, are
   /// accepted, because their statuses are checked next
-  bool balanced(const TimeStep& step, const VectorXd& residual,
-                const Eigen::SparseMatrix<double>& constraints, const StepContacts& contacts,
-                bool on_statuses) const;
+  bool balanced(const TimeStep& step, const VectorXd& residual, const VectorXd& held,
+                const StepContacts& contacts, bool on_statuses) const;
 
  private:
   VectorXd unknowns_at(const VectorXd& q) const;
+  void evaluate_springs_at(const VectorXd& z, double time);
 
   const System& system_;
   const Bodies& bodies_;

@@ -51,7 +51,7 @@ void StepMatrix::fill_bodies(const TimeStep& step, RefilledMatrix& to) {
     }
   }
   if (forces_.contacts().have_springs()) {
-    add_block(forces_.evaluate_springs(step.q_middle, step.to).jacobian(), by_place);
+    add_block(forces_.evaluate_springs_with_holds(step.q_middle, step.to).jacobian(), by_place);
   }
   if (bodies.damped()) {
     for (const auto& one : bodies.damping_entries(step.q_middle)) {

@@ -61,6 +61,7 @@ class StepMatrix {
   VectorXd solve_bodies(const VectorXd& right) { return bodies_factor_.solve(right); }
 
   const VelocityConstraints& constraints() const { return constraints_; }
+  VelocityConstraints& constraints() { return constraints_; }
   /// Scales the constraints as in stored factors.
   void scale_constraints(const TimeStep& step, double scale) { constraints_.set(step, scale); }
   long factorizations() const { return factorizations_; }

@@ -40,8 +40,12 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   state_.z.head(q.size()) = q;
   Statuses statuses = system_.all_stick();
   state_.origin = system_.begin(state_.z, 0.0, statuses, 1.0);
-  if (equilibrium != nullptr) contacts_.begin(*equilibrium, options_.start_friction);
-  contacts_.write(state_.z, statuses);
+  state_.held = VectorXd::Zero(static_cast<Eigen::Index>(contacts_.turning_holds().size()));
+  if (equilibrium != nullptr) {
+    contacts_.begin(*equilibrium, options_.start_friction);
+    state_.held = contacts_.held_at_rest(*equilibrium);
+  }
+  write_forces(state_.z, statuses);
   forces_.evaluate_contacts(q, 0.0);
   contacts_.measure(state_.z, 0.0, state_.origin, forces_.joints().residual, 0.0);
   note_statuses();
@@ -49,6 +53,11 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   state_.force = forces_.elastic_force(q, 0.0);
   state_.origin = system_.begin(state_.z, 0.0, statuses, 1.0);
   contacts_.write_annuli(state_.origin);
+}
+
+void Stepper::write_forces(VectorXd& z, Statuses& statuses) const {
+  contacts_.write(z, statuses);
+  z(contacts_.turning_holds()) = state_.held;
 }
 
 void Stepper::note_statuses() {
@@ -75,6 +84,7 @@ StepContacts Stepper::contacts_of(const TimeStep& step) {
 }
 
 std::optional<StepContacts> Stepper::find(TimeStep& step, bool give_up) {
+  matrix_.constraints().begin();
   step.force_before = forces_.force_before(step);
   forces_.evaluate_contacts(step.q_middle, step.to);
   VectorXd middle = state_.z;
@@ -100,7 +110,7 @@ bool Stepper::keeps_directions(const TimeStep& step) const {
   const VectorXd way = step.q - step.q_middle;
   for (const Contact& contact : contacts_.all()) {
     const bool is_round =
-        contact.normal_column >= 0 && contact.stop == JointStatus::open && !contact.beside;
+        contact.normal_column >= 0 && contact.stop == JointStatus::open && contact.turns_normal;
     if (!is_round || contact.gap == Contact::infinite) continue;
     const double gap = contacts_.gap_at(contact, z, step.to, state_.origin);
     const double off = std::abs(gap - forces_.gap_after(contact, way));
@@ -176,18 +186,21 @@ void Stepper::accept() {
 }
 
 void Stepper::commit(const TimeStep& step, const StepContacts& contacts) {
-  painleve_.check(step, contacts);
-  uniqueness_.check(step, contacts);
   // Mean velocities, by which impulses do work.
   const VectorXd through = step.differentiates ? VectorXd((step.q - state_.q) / step.h)
                                                : VectorXd(0.5 * (state_.v + step.v));
-  commit_contacts(step, contacts, through, contacts_, account_);
   const VelocityConstraints& constraints = matrix_.constraints();
   for (Eigen::Index k = 0; k < constraints.drive_count(); ++k) {
     const Eigen::Index column = constraints.count() - constraints.drive_count() + k;
     drive_moment_[k] = -constraints.scale() * step.held[column] / step.h;
     account_.drives -= step.held[column] * constraints.columns().col(column).dot(through);
   }
+  const VectorXd held = constraints.turning_forces(step);
+  // The checks factor other matrices and scale the constraints anew.
+  painleve_.check(step, contacts);
+  uniqueness_.check(step, contacts);
+  commit_contacts(step, contacts, through, contacts_, account_);
+  state_.held = held;
   if (bodies_.damped()) {
     const double theta = step.differentiates ? 0.5 : step.theta;
     const Bodies::Work work = bodies_.work(state_.q, state_.v, step.q, step.v, step.span, theta);
@@ -197,7 +210,7 @@ void Stepper::commit(const TimeStep& step, const StepContacts& contacts) {
   VectorXd z(state_.z.size());
   z.head(step.q.size()) = step.q;
   Statuses statuses = state_.origin.statuses;
-  contacts_.write(z, statuses);
+  write_forces(z, statuses);
   StepStart after = system_.commit(z, step.to, statuses, state_.origin);
   contacts_.write_annuli(after);
   account_.thermal_work += system_.work_on_elements({state_.z, state_.time, z, step.to});

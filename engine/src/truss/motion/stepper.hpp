@@ -85,6 +85,8 @@ class Stepper {
   double deepest(const TimeStep& step) const;
   /// Commits a step: state, memory, energies.
   void commit(const TimeStep& step, const StepContacts& contacts);
+  /// Writes the forces of all joints into the unknowns z, and their statuses.
+  void write_forces(VectorXd& z, Statuses& statuses) const;
   void note_statuses();
 
   const System& system_;

@@ -22,6 +22,7 @@ struct MotionState {
   VectorXd z;                ///< q and the forces of the joints.
   StepStart origin;          ///< Statuses and history of the joints.
   VectorXd force;            ///< Forces without dashpots and contacts at (q, time) [N].
+  VectorXd held;             ///< Forces of Contacts::turning_holds() in the last step [N].
   ContactStatuses contacts;  ///< Statuses of all contacts in the last step.
 };
 

@@ -63,7 +63,6 @@ class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
         ItemColumn("beam_hinge_rotation_rad", "of the second node against the first"),
         ItemColumn("beam_hinge_moment_N_m", MOMENT),
     )
-    in_motion = False
     not_in_dem = "rotates its nodes, the DEM has no rotations of nodes yet"
 
     def check_references(self, item: Hinge, nodes: Mapping[str, Any], links: Mapping[str, Any],

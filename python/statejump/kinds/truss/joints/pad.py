@@ -62,7 +62,6 @@ class PadType(JointType[Pad, Pads]):
         ItemColumn("pad_friction_N", "on the node", vector=True),
     )
     varied = ("friction_coefficient", "clearance_m", "normal_stiffness_N_per_m", "tangential_stiffness_N_per_m")
-    in_motion = False
     not_in_dem = "is a pad, the DEM has sliders only"
 
     def check_vectors(self, item: Pad, dimension: int) -> None:

@@ -51,7 +51,6 @@ class RigidType(JointType[Rigid, Rigids]):
     columns: ClassVar[tuple[ItemColumn, ...]] = (
         ItemColumn("rigid_force_N", "force of the arm on its node", True),
     )
-    in_motion = False
     not_in_dem = "rotates its nodes, the DEM has no rotations of nodes yet"
 
     def check_vectors(self, item: Rigid, dimension: int) -> None:
