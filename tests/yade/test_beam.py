@@ -11,7 +11,8 @@ def seen(run_script, tmp_path_factory):
 
 def test_stable_step_is_that_of_the_highest_frequency(seen):
     for name, run in seen["frequency"].items():
-        assert 0.8 < run["ratio"] <= 1 + 1e-6, (name, run)
+        # The bound of a body assumes an equal motion of the other end. A single beam at a support has none.
+        assert (0.7 if name == "one" else 0.9) < run["ratio"] <= 1 + 1e-6, (name, run)
 
 
 def test_free_swing_keeps_momentum_and_energy(seen):
