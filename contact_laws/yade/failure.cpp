@@ -48,6 +48,8 @@ std::string Failure::sentence() const {
       return before + "the link between bodies " + bodies + after + " (" + when + ")";
     case Part::prismatic_joint:
       return before + "the prismatic joint between bodies " + bodies + after + " (" + when + ")";
+    case Part::beam:
+      return before + "the beam between bodies " + bodies + after + " (" + when + ")";
     case Part::torsion_spring:
       break;
   }
@@ -143,8 +145,8 @@ boost::python::object take_failure() {
   const std::lock_guard<std::mutex> lock(message_mutex);
   if (!thrown_failure) return py::object();
   const Failure taken = *std::exchange(thrown_failure, std::nullopt);
-  const char* const parts[] = {"contact",         "link", "torsion_spring",
-                               "prismatic_joint", "body", "scene"};
+  const char* const parts[] = {"contact", "link", "torsion_spring", "prismatic_joint",
+                               "beam",    "body", "scene"};
   py::dict result;
   result["part"] = parts[static_cast<std::size_t>(taken.part)];
   py::list bodies;

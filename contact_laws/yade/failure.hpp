@@ -44,12 +44,20 @@ std::string text_of(const yade::Vector3r& value);  // "(1, 2, 3)"
 // of parsing the sentence.
 struct Failure {
   // Type of the failed part. A part has one or two bodies; the scene has none.
-  enum class Part : unsigned char { contact, link, torsion_spring, prismatic_joint, body, scene };
+  enum class Part : unsigned char {
+    contact,
+    link,
+    torsion_spring,
+    prismatic_joint,
+    beam,
+    body,
+    scene
+  };
   Part part = Part::contact;
   int id1 = -1;
   int id2 = -1;  // for a torsion spring, id1 and id2 are the tips of its two links
-  // Text before and after the name of a link, spring, prismatic joint or body. For a contact (named
-  // at the end) and for the scene, `before` contains the whole sentence.
+  // Text before and after the name of a link, spring, prismatic joint, beam or body. For a contact
+  // (named at the end) and for the scene, `before` contains the whole sentence.
   std::string before = {};
   std::string after = {};
   yade::Real time = 0;  // [s]

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "beam.hpp"
 #include "bore.hpp"
 #include "contact_parts.hpp"
 #include "guide.hpp"
@@ -180,6 +181,11 @@ Fault fault_of_engine(const yade::Scene& scene, const yade::Engine& engine) {
       return joint ? fault_of_prismatic(scene, *joint) : std::nullopt;
     });
   }
+  if (const auto* group = known_cast<const BeamBonds>(&engine)) {
+    return first_of(group->bonds, [&](const auto& bond) {
+      return bond ? fault_of_beam(scene, *bond) : std::nullopt;
+    });
+  }
   if (const auto* guides = known_cast<const GuidePlanes>(&engine)) {
     return first_of(guides->ids, [&](int id) { return fault_of_body(scene, id); });
   }
@@ -263,6 +269,22 @@ Fault fault_of_prismatic(const yade::Scene& scene, const PrismaticJoint& joint) 
     return fault("offset (its length)", values.offset.norm(), " m", "finite");
   }
   return std::nullopt;
+}
+
+Fault fault_of_beam(const yade::Scene& scene, const BeamBond& bond) {
+  if (!allows(ValueRange::positive, scene.dt)) return fault_of_scene(scene);
+  for (const int id : {bond.id1, bond.id2}) {
+    if (Fault fault = fault_of_body(scene, id)) return fault;
+  }
+  const stepper::BeamBond& values = bond;
+  const auto* wrong_one =
+      stepper::first_invalid<stepper::BeamBond>(stepper::beam_quantities, values);
+  if (!wrong_one) return std::nullopt;
+  const std::string name = std::string(BeamBond::class_name) + "." + wrong_one->name;
+  return failure(scene, Part::beam, bond.id1, bond.id2, name + " of ",
+                 wrong(values.*wrong_one->value, std::string(" ") + wrong_one->unit,
+                       range_text(wrong_one->allowed)),
+                 not_allowed(name, values.*wrong_one->value, range_text(wrong_one->allowed)));
 }
 
 Fault fault_of_scene(const yade::Scene& scene) {

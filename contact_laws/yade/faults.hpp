@@ -11,6 +11,7 @@
 
 namespace statejump::dem {
 
+struct BeamBond;
 struct PrismaticJoint;
 struct TorsionSpring;
 
@@ -34,6 +35,9 @@ struct TorsionSpring;
 // First fault of a slider between two bodies, in its bodies or parameters.
 [[gnu::cold]] std::optional<Failure> fault_of_prismatic(const yade::Scene& scene,
                                                         const PrismaticJoint& joint);
+
+// First fault of a beam between two bodies, in its bodies or parameters.
+[[gnu::cold]] std::optional<Failure> fault_of_beam(const yade::Scene& scene, const BeamBond& bond);
 
 // An invalid value of a material.
 struct MaterialFault {

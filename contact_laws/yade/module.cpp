@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "beam.hpp"
 #include "bore.hpp"
 #include "failure.hpp"
 #include "guide.hpp"
@@ -52,8 +53,8 @@ using OurClasses = ClassList<
     Ig2_Ball_Socket_JointGeom, Ig2_Ball_Ball_JointGeom, Ig2_Slider_SlotFace_JointGeom,
     Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
     Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine, ThermalLink,
-    ThermalLinks, TorsionSpring, TorsionSprings, PrismaticJoint, PrismaticJoints, GuidePlanes,
-    StateRecorder, JointStepper
+    ThermalLinks, TorsionSpring, TorsionSprings, PrismaticJoint, PrismaticJoints, BeamBond,
+    BeamBonds, GuidePlanes, StateRecorder, JointStepper
 #ifdef STATEJUMP_HAS_VIEW
     ,
     Gl1<Journal>, Gl1<Bearing>, Gl1<Ball>, Gl1<Socket>, Gl1<Slider>, Gl1<SlotFace>, Gl1<MeshBore>
@@ -71,6 +72,7 @@ std::string setup(const boost::python::object& wrapper) {
   register_list_converter<ThermalLink>();
   register_list_converter<TorsionSpring>();
   register_list_converter<PrismaticJoint>();
+  register_list_converter<BeamBond>();
   register_list_converter<JointGeom>();
   register_list_converter<JointPhys>();
   register_triangles_converter();
@@ -166,6 +168,8 @@ STATEJUMP_EXPORT(TorsionSpring)
 STATEJUMP_EXPORT(TorsionSprings)
 STATEJUMP_EXPORT(PrismaticJoint)
 STATEJUMP_EXPORT(PrismaticJoints)
+STATEJUMP_EXPORT(BeamBond)
+STATEJUMP_EXPORT(BeamBonds)
 STATEJUMP_EXPORT(GuidePlanes)
 STATEJUMP_EXPORT(StateRecorder)
 STATEJUMP_EXPORT(JointStepper)
@@ -203,7 +207,8 @@ BOOST_PYTHON_MODULE(_native) {
   py::def(
       "take_failure", &statejump::dem::take_failure,
       "What ended the last run, as fields, and forget it: a dict with part ('contact', 'link', "
-      "'torsion_spring', 'prismatic_joint', 'body' or 'scene'), bodies (two ids, one or none), "
+      "'torsion_spring', 'prismatic_joint', 'beam', 'body' or 'scene'), bodies (two ids, one or "
+      "none), "
       "before and after (the "
       "sentence around the name of a link, spring or body), time [s], stable_time_step [s] (None "
       "unless the step was too long) "
@@ -215,7 +220,8 @@ BOOST_PYTHON_MODULE(_native) {
           "Stable time step of the current scene [s], on the safe side: smallest of "
           "4 / (c + sqrt(c^2 + 4 k)) over the bodies, k and c twice the sums of stiffness and "
           "damping times 1/m (plus arm^2/I where the body may turn) of what touches it (joint "
-          "contacts at their current stiffness, thermal links, torsion springs, prismatic joints). "
+          "contacts at their current stiffness, thermal links, torsion springs, prismatic joints, "
+          "beams). "
           "Contacts that do "
           "not touch yet "
           "count nothing. Infinity when nothing acts on a free body.");

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "beam.hpp"
 #include "blocked_motion.hpp"
 #include "bore.hpp"
 #include "joint.hpp"
@@ -96,6 +97,33 @@ class BodySums {
     }
   }
 
+  void add(const BeamBond& bond) {
+    if (bond.axisX.isZero(0)) return;  // before the first step
+    const kernel::Beam beam = stepper::placed(bond).beam;
+    const stepper::Mobility one =
+        stepper::at_offset(mobility_of(state_of(bond.id1, "BeamBond.id1")), bond.offset1);
+    const stepper::Mobility two =
+        stepper::at_offset(mobility_of(state_of(bond.id2, "BeamBond.id2")), bond.offset2);
+    const Real change = bond.program ? bond.program->temperature_change(scene_.time) : 0;
+    const Real length = std::min(bond.stressFreeLength,
+                                 bond.stressFreeLength * (1 + bond.thermalExpansion * change));
+    kernel::BeamStep::Vector6 stiffness = stepper::unloaded_stiffness(beam, length);
+    const kernel::BeamStep::Vector6 damping =
+        stepper::mode_damping(bond.dampingRatio, stiffness, length, one, two);
+    const Real tension = std::max(bond.force2[0], 0.0);
+    for (int k = 0; k < 2; ++k) {
+      stiffness[1 + k] += tension * length / 3;
+      stiffness[3 + k] += tension * length / 5;
+    }
+    // The modes of one end, while the other is fixed, bound its part of the modes.
+    const auto add_end = [&](int id, const stepper::Mobility& end) {
+      add(id, 1, stepper::largest_rate(stiffness, tension / length, length, end, {}),
+          stepper::largest_rate(damping, 0, length, end, {}));
+    };
+    add_end(bond.id1, one);
+    add_end(bond.id2, two);
+  }
+
   void add(const PrismaticJoint& joint) {
     const Real one = inverse_mass(state_of(joint.id1, "PrismaticJoint.id1"));
     const Real two = inverse_mass(state_of(joint.id2, "PrismaticJoint.id2"));
@@ -168,6 +196,8 @@ double stable_time_step(const yade::Scene& scene) {
       add_each(springs->springs, sums);
     } else if (const auto* joints = dynamic_cast<const PrismaticJoints*>(engine.get())) {
       add_each(joints->joints, sums);
+    } else if (const auto* beams = dynamic_cast<const BeamBonds*>(engine.get())) {
+      add_each(beams->bonds, sums);
     }
   }
   return sums.stable_time_step();

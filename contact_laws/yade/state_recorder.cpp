@@ -16,7 +16,7 @@ namespace {
 
 // Columns per object of each type.
 constexpr std::size_t body_width = 9, contact_width = 12, link_width = 4, spring_width = 3,
-                      joint_width = 3;
+                      joint_width = 3, beam_width = 12, rotation_width = 9;
 
 std::uint64_t key_of(int one, int other) {
   const auto [low, high] = std::minmax(one, other);
@@ -47,6 +47,7 @@ void StateRecorder::check() {
   require_objects(links, "links");
   require_objects(springs, "springs");
   require_objects(joints, "joints");
+  require_objects(beams, "beams");
   columns_.clear();
   for (std::size_t i = 0; i < contacts.size(); i += 2) {
     if (!columns_.emplace(key_of(contacts[i], contacts[i + 1]), i / 2).second) {
@@ -60,7 +61,8 @@ void StateRecorder::check() {
 std::size_t StateRecorder::width() const {
   return 1 + energy_names().size() + 3 + body_width * bodies.size() +
          contact_width * columns_.size() + link_width * links.size() +
-         spring_width * springs.size() + joint_width * joints.size();
+         spring_width * springs.size() + joint_width * joints.size() + beam_width * beams.size() +
+         rotation_width * rotations.size();
 }
 
 boost::python::list StateRecorder::scalars() const {
@@ -95,6 +97,21 @@ void StateRecorder::sample(const yade::Scene& of, const Sums& sums) {
   }
   for (const auto& joint : joints) {
     rows_.insert(rows_.end(), {joint->slide, joint->frictionForce, joint->stopForce});
+  }
+  for (const auto& beam : beams) {
+    rows_.resize(rows_.size() + beam_width);
+    put(rows_.data() + rows_.size() - beam_width,
+        {beam->force1, beam->moment1, beam->force2, beam->moment2});
+  }
+  for (const int id : rotations) {
+    const yade::State& state = *body_of(of, id, "StateRecorder.rotations").state;
+    Vector3r torque = sums.torque(static_cast<std::size_t>(id));
+    for (int k = 0; k < 3; ++k) {
+      if (state.blockedDOFs & (8U << k)) torque[k] = 0;
+    }
+    rows_.resize(rows_.size() + rotation_width);
+    put(rows_.data() + rows_.size() - rotation_width,
+        {stepper::rotation_vector(state.se3.orientation), state.angVel, torque});
   }
 }
 
@@ -137,9 +154,11 @@ void StateRecorder::action() {
     energies = read_energies(*scene);
     stored = read_stored_energies(*scene);
   }
-  sample(*scene, {energies, stored, [this](std::size_t id) {
-                    return Vector3r(scene->forces.getForce(static_cast<int>(id)));
-                  }});
+  sample(
+      *scene,
+      {energies, stored,
+       [this](std::size_t id) { return Vector3r(scene->forces.getForce(static_cast<int>(id))); },
+       [this](std::size_t id) { return Vector3r(scene->forces.getTorque(static_cast<int>(id))); }});
 }
 
 boost::python::object StateRecorder::take() {

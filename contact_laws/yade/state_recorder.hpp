@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "beam.hpp"
 #include "prismatic.hpp"
 #include "registered.hpp"
 #include "statejump/stepper/arrays.hpp"
@@ -30,18 +31,24 @@ struct StateRecorder : Registered<StateRecorder, yade::GlobalEngine> {
       "YADE, zeros where it is not there; of each link axialForce [N], temperatureChange [K], "
       "previousExtension [m] and previousStressFreeLength [m]; of each torsion spring angle [rad], "
       "moment [N m] and frictionMoment [N m]; of each prismatic joint slide [m], frictionForce [N] "
-      "and stopForce [N]. Rows that nobody has taken are not saved.";
+      "and stopForce [N]; of each beam force1 [N], moment1 [N m], force2 [N] and moment2 [N m]; of "
+      "each body among rotations its rotation vector since the orientation 1 [rad], angular "
+      "velocity [rad/s] and torque [N m] about the axes about which it is free. Rows that nobody "
+      "has taken are not saved.";
   int iterPeriod = 1;
   std::vector<int> bodies, contacts;
   std::vector<yade::shared_ptr<ThermalLink>> links;
   std::vector<yade::shared_ptr<TorsionSpring>> springs;
   std::vector<yade::shared_ptr<PrismaticJoint>> joints;
+  std::vector<yade::shared_ptr<BeamBond>> beams;
+  std::vector<int> rotations;
 
   // Quantities that a scene does not store in its objects. The caller must hold the GIL.
   struct Sums {
     const stepper::Energies& energies;
     const stepper::StoredEnergies& stored;
-    std::function<Vector3r(std::size_t)> force;  // force on a body [N]
+    std::function<Vector3r(std::size_t)> force;   // force on a body [N]
+    std::function<Vector3r(std::size_t)> torque;  // torque on a body [N m]
   };
   void sample(const yade::Scene& of, const Sums& sums);
   bool samples(long iteration) const { return iteration % iterPeriod == 0; }
@@ -59,7 +66,10 @@ struct StateRecorder : Registered<StateRecorder, yade::GlobalEngine> {
                   "Contacts by the ids of their two bodies, one contact after the other [-]"),
         attribute("links", &StateRecorder::links, "List of ThermalLink objects"),
         attribute("springs", &StateRecorder::springs, "List of TorsionSpring objects"),
-        attribute("joints", &StateRecorder::joints, "List of PrismaticJoint objects"));
+        attribute("joints", &StateRecorder::joints, "List of PrismaticJoint objects"),
+        attribute("beams", &StateRecorder::beams, "List of BeamBond objects"),
+        attribute("rotations", &StateRecorder::rotations,
+                  "Bodies whose rotation is kept, by their ids [-]"));
   }
   template <class PythonClass>
   static void register_methods(PythonClass& entry) {

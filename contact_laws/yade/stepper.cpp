@@ -110,7 +110,8 @@ class StepsAhead {
       exchange_.scatter(arrays_);
       for (const auto& [recorder, size] : wanting) {
         recorder->sample(scene_, {arrays_.energies, arrays_.stored,
-                                  [&](std::size_t id) { return arrays_.bodies[id].force; }});
+                                  [&](std::size_t id) { return arrays_.bodies[id].force; },
+                                  [&](std::size_t id) { return arrays_.bodies[id].torque; }});
       }
     };
     const auto attempt = [&](long some, const stepper::Scene::Observe& observe_last) {

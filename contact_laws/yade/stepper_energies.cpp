@@ -20,7 +20,7 @@ struct Entry {
 template <class Energies, std::size_t size>
 using Entries = std::array<Entry<Energies>, size>;
 
-constexpr Entries<stepper::Energies, 11> growing = {
+constexpr Entries<stepper::Energies, 13> growing = {
     {{"jointFriction", &stepper::Energies::joint_friction},
      {"jointDamping", &stepper::Energies::joint_damping},
      {"jointThermalWork", &stepper::Energies::joint_thermal_work},
@@ -30,14 +30,17 @@ constexpr Entries<stepper::Energies, 11> growing = {
      {"torsionFriction", &stepper::Energies::torsion_friction},
      {"prismaticFriction", &stepper::Energies::prismatic_friction},
      {"prismaticDamping", &stepper::Energies::prismatic_damping},
+     {"beamDamping", &stepper::Energies::beam_damping},
+     {"beamThermalWork", &stepper::Energies::beam_thermal_work},
      {"nonviscDamp", &stepper::Energies::numerical_damping},
      {"gravWork", &stepper::Energies::gravity_work}}};
 
-constexpr Entries<stepper::StoredEnergies, 4> of_a_step = {
+constexpr Entries<stepper::StoredEnergies, 5> of_a_step = {
     {{"jointElastic", &stepper::StoredEnergies::joint},
      {"linkElastic", &stepper::StoredEnergies::link},
      {"torsionElastic", &stepper::StoredEnergies::torsion},
-     {"prismaticElastic", &stepper::StoredEnergies::prismatic}}};
+     {"prismaticElastic", &stepper::StoredEnergies::prismatic},
+     {"beamElastic", &stepper::StoredEnergies::beam}}};
 
 template <class Energies, std::size_t size>
 Energies read(const yade::Scene& scene, const Entries<Energies, size>& entries) {

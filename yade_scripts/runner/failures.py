@@ -34,6 +34,7 @@ class Names:
 
     joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # joint, words for the sentence
     links: dict[frozenset[int], str] = field(default_factory=dict)
+    beams: dict[frozenset[int], str] = field(default_factory=dict)
     # by the tips of their links, as for joints
     torsion_springs: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)
     prismatic_joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # as joints
@@ -43,6 +44,11 @@ class Names:
         """Add a link or spring; several of them may be between the same bodies."""
         bodies = pair(link.id1, link.id2)
         self.links[bodies] = f"{self.links[bodies]} or {words}" if bodies in self.links else words
+
+    def add_beam(self, beam: Any, words: str) -> None:
+        """Add a beam; several of them may be between the same bodies."""
+        bodies = pair(beam.id1, beam.id2)
+        self.beams[bodies] = f"{self.beams[bodies]} or {words}" if bodies in self.beams else words
 
     def add_prismatic_joint(self, made: Any, words: str, joint: str) -> None:
         """Add a prismatic joint; several of them may be between the same bodies."""
@@ -103,10 +109,10 @@ def described(
             part = words
         else:
             bodies = pair(*taken["bodies"])
-            is_link = taken["part"] == "link"
+            single = {"link": names.links, "beam": names.beams}.get(taken["part"])
             unknown = f"the {taken['part'].replace('_', ' ')} of bodies {' and '.join(map(str, taken['bodies']))}"
             known = names.prismatic_joints if taken["part"] == "prismatic_joint" else names.torsion_springs
-            joint, part = ("", names.links.get(bodies, unknown)) if is_link else known.get(bodies, ("", unknown))
+            joint, part = known.get(bodies, ("", unknown)) if single is None else ("", single.get(bodies, unknown))
             cause = taken["before"] + part + taken["after"]
         if taken["stable_time_step"] is not None:
             # The stable step of one contact or link exceeds that of all contacts and links of one body together.

@@ -31,9 +31,11 @@ from statejump.core.samples import names_line, rows_of
 
 # Samples are processed in blocks, after this time or when they need this much memory.
 SECONDS_OF_A_BLOCK, BYTES_OF_A_BLOCK = 0.1, 2**25
+SECONDS_UNTIL_PACE = 2.0
 # Between two checks of the samples, a run makes a hundredth of its steps or, for a small scene, this number divided by
 # the number of bodies: some milliseconds in the JointStepper, which copies its arrays at each check.
 STEPS_OF_A_BODY = 100_000
+LONGEST_BODY_STEPS = 10_000_000  # number of bodies times steps between two checks at most: some seconds
 NO_DISPLAY = 3  # exit status of a view
 
 
@@ -61,7 +63,8 @@ class Block:
 
     def __init__(self, case, kind, built, recorder, write):
         self._case, self._kind, self._built, self._recorder, self._write = case, kind, built, recorder, write
-        self._written = time.perf_counter()
+        self._started = self._written = time.perf_counter()
+        self._told = False
         self.refused = None  # kept here, because YADE converts Python errors to tracebacks
 
     def record(self):
@@ -70,8 +73,13 @@ class Block:
         if waited < SECONDS_OF_A_BLOCK and self._recorder.bytes_kept < BYTES_OF_A_BLOCK:
             return
         self.write()
-        report({"progress": O.iter / self._case["dem"]["number_of_steps"]})
         self._written = time.perf_counter()
+        steps, passed = self._case["dem"]["number_of_steps"], self._written - self._started
+        message = {"progress": O.iter / steps}
+        if not self._told and passed > SECONDS_UNTIL_PACE:
+            self._told = True
+            message |= {"steps": steps, "steps_per_s": O.iter / passed}
+        report(message)
 
     def write(self):
         """Write all samples."""
@@ -107,9 +115,9 @@ def run(case, output):
         between = PyRunner(command="block.record()", label="between")
         built = kind.build(case, [recorder.engine, between])
         recorder.watch(kind.watched(built))
-        between.iterPeriod = every * max(1, min(
+        between.iterPeriod = min(every * max(1, min(
             max(steps // 100, STEPS_OF_A_BODY // len(O.bodies)) // every, BYTES_OF_A_BLOCK // recorder.bytes_of_a_sample
-        ))
+        )), max(1, LONGEST_BODY_STEPS // len(O.bodies)))
         step_joints(case, between.iterPeriod)
         globals()["block"] = block = Block(case, kind, built, recorder, write)
         started, started_cpu = time.perf_counter(), time.process_time()

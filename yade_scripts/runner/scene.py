@@ -2,7 +2,7 @@
 """Code shared by the scenes of all kinds; imported by scripts that run under ``yade``."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import statejump_yade as sj
@@ -69,6 +69,7 @@ def joint_engines(
     expansions: list[wrapper.Engine] | None = None,
     guides: dict[int, tuple[float, float, float]] | None = None,
     prismatic_joints: tuple[sj.PrismaticJoint, ...] = (),
+    beams: Sequence[sj.BeamBond] = (),
 ) -> list[wrapper.Engine]:
     """Return the engines of a scene of joints, links and torsion springs. Recorders read positions, temperature and
     forces that belong to the same time.
@@ -102,6 +103,7 @@ def joint_engines(
         sj.ThermalLinks(links=links),
         sj.TorsionSprings(springs=list(springs)),
         *([sj.PrismaticJoints(joints=list(prismatic_joints))] if prismatic_joints else []),
+        *([sj.BeamBonds(bonds=list(beams))] if beams else []),
         *([sj.GuidePlanes(ids=list(guides), normals=list(guides.values()))] if guides else []),
         *recorders,
         wrapper.NewtonIntegrator(damping=0),

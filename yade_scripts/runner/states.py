@@ -20,6 +20,8 @@ CONTACT = [("real", NUMBER), ("penetrationDepth", NUMBER), ("slipping", NUMBER),
 LINK = [("axialForce", NUMBER), ("temperatureChange", NUMBER), ("extension", NUMBER), ("stressFreeLength", NUMBER)]
 SPRING = [("angle", NUMBER), ("moment", NUMBER), ("frictionMoment", NUMBER)]
 JOINT = [("slide", NUMBER), ("frictionForce", NUMBER), ("stopForce", NUMBER)]
+BEAM = [("force1", VECTOR), ("moment1", VECTOR), ("force2", VECTOR), ("moment2", VECTOR)]
+ROTATION = [("rotation", VECTOR), ("angularVelocity", VECTOR), ("torque", VECTOR)]
 
 
 class Watched:
@@ -27,9 +29,11 @@ class Watched:
 
     def __init__(self, bodies: Iterable[int] = (), contacts: Iterable[Pair] = (),
                  links: Iterable[sj.ThermalLink] = (), springs: Iterable[sj.TorsionSpring] = (),
-                 joints: Iterable[sj.PrismaticJoint] = ()) -> None:
+                 joints: Iterable[sj.PrismaticJoint] = (), beams: Iterable[sj.BeamBond] = (),
+                 rotations: Iterable[int] = ()) -> None:
         self.bodies, self.contacts = list(bodies), list(contacts)
         self.links, self.springs, self.joints = list(links), list(springs), list(joints)
+        self.beams, self.rotations = list(beams), list(rotations)
 
 
 class States:
@@ -86,6 +90,21 @@ class States:
         """Return ``slide`` [m], ``frictionForce`` and ``stopForce`` [N]."""
         return self._of("joints", map(id, joints))
 
+    def beams(self, beams: Iterable[sj.BeamBond]) -> np.ndarray:
+        """Return ``force1``, ``moment1``, ``force2`` and ``moment2`` in the axes of the section [N, N m]."""
+        return self._of("beams", map(id, beams))
+
+    def rotations(self, ids: Iterable[int]) -> np.ndarray:
+        """Return ``rotation`` (vector) [rad], ``angularVelocity`` [rad/s] half a step before it, and ``torque`` about
+        free axes [N m]."""
+        return self._of("rotations", ids)
+
+    def rotary_energies(self, ids: Sequence[int]) -> np.ndarray:
+        """Return the kinetic energies of rotation [J] of bodies with equal moments of inertia about all axes."""
+        bodies, inertia = self.rotations(ids), np.array([O.bodies[body].state.inertia[0] for body in ids])
+        spin = bodies["angularVelocity"] + (0.5 * O.dt / inertia)[:, None] * bodies["torque"]
+        return 0.5 * inertia * dot(spin, spin)
+
 
 class Recorder:
     """A StateRecorder, and the order of the values in its rows. Place ``engine`` right before the NewtonIntegrator.
@@ -101,14 +120,16 @@ class Recorder:
         engine = self.engine
         engine.bodies, engine.contacts = watched.bodies, [body for pair in watched.contacts for body in pair]
         engine.links, engine.springs, engine.joints = watched.links, watched.springs, watched.joints
+        engine.beams, engine.rotations = watched.beams, watched.rotations
         keys = {"bodies": watched.bodies, "contacts": watched.contacts, "links": map(id, watched.links),
-                "springs": map(id, watched.springs), "joints": map(id, watched.joints)}
+                "springs": map(id, watched.springs), "joints": map(id, watched.joints),
+                "beams": map(id, watched.beams), "rotations": watched.rotations}
         self._watched = watched  # keeps the objects alive, so that their ids stay unique
         self._places = {(sort, key): place for sort, all_keys in keys.items() for place, key in enumerate(all_keys)}
         self._row = np.dtype([(name, NUMBER) for name in engine.scalars()] + [
             (sort, part, (len(getattr(watched, sort)),))
             for sort, part in (("bodies", BODY), ("contacts", CONTACT), ("links", LINK), ("springs", SPRING),
-                               ("joints", JOINT))
+                               ("joints", JOINT), ("beams", BEAM), ("rotations", ROTATION))
         ])
         assert self._row.itemsize == 8 * engine.width()
 

@@ -793,6 +793,7 @@ CODES: dict[str, Code] = {
     "dem_node_without_mass": Code(text="the DEM needs a mass at every node that moves"),
     "dem_path_too_large": Code(text="the path is too large to be kept as a whole"),
     "dem_second_contact": Code(text="a node has a second contact part, in the DEM it has one"),
+    "dem_rotation": Code(text="a rotation of a node that the DEM cannot follow"),
     "dem_spring_free_length": Code(text="the DEM needs free lengths of springs above 0"),
     "dem_torsion_out_of_plane": Code(text="the DEM has torsion springs in a plane only"),
     "dem_of_control": Code(

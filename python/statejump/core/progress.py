@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from statejump.core.errors import printable
+from statejump.core.pace import shown_by
 
 if TYPE_CHECKING:
     from rich.console import Console  # 0.1 s; a run in Python prints nothing
 
 OnProgress = Callable[[float], None]
+LONGEST_SILENCE_S = 60.0  # time between two lines of progress
 
 
 def silent(share: float) -> None:
@@ -56,7 +59,14 @@ def bar(label: str) -> Iterator[OnProgress]:
 
 @contextmanager
 def on_console(console: Console, label: str) -> Iterator[OnProgress]:
-    """Yield a function that shows the finished fraction on a console: a bar on a terminal, else lines."""
+    """Yield a function that shows the finished fraction on a console: a bar on a terminal, else lines. The pace of runs
+    with time steps is shown there too."""
+    with _shares(console, label) as on_progress, shown_by(lambda text: console.print(f"{label}: {text}")):
+        yield on_progress
+
+
+@contextmanager
+def _shares(console: Console, label: str) -> Iterator[OnProgress]:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn  # as Console
 
     if console.is_terminal:
@@ -66,14 +76,15 @@ def on_console(console: Console, label: str) -> Iterator[OnProgress]:
             task = shown_bar.add_task(label, total=1.0)
             yield lambda share: shown_bar.update(task, completed=share)
         return
-    tenths = [-1]
+    tenths, printed_s = [-1], [monotonic()]
 
     def line(share: float) -> None:
         if share >= 1 and tenths[0] < 0:
             return  # a run that ends at once needs no progress
-        if int(10 * share) > tenths[0]:
-            tenths[0] = int(10 * share)
-            console.print(f"{label}: {100 * share:.0f} %")
+        if int(10 * share) > tenths[0] or monotonic() > printed_s[0] + LONGEST_SILENCE_S:
+            digits = 0 if int(10 * share) > tenths[0] else 2
+            tenths[0], printed_s[0] = int(10 * share), monotonic()
+            console.print(f"{label}: {100 * share:.{digits}f} %")
 
     yield line
 

@@ -22,6 +22,7 @@ from statejump import _paths
 from statejump.core.case import Case
 from statejump.core.errors import FailedRun, Interrupted, NotAllowed, StatejumpError
 from statejump.core.output import not_written, write_bytes
+from statejump.core.pace import show_pace
 from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.samples import read_samples
@@ -180,6 +181,8 @@ def _watch(command: list[str], environment: dict[str, str], on_progress: OnProgr
                 if "progress" in message:
                     finished = message["progress"] >= 1
                     on_progress(message["progress"])
+                    if "steps" in message:
+                        show_pace(message["steps"], message["steps_per_s"], message["progress"])
                 elif "failure" in message:
                     failure = message["failure"]
                 elif said:

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "statejump/kernel/beam.hpp"
+#include "statejump/kernel/beam_section.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/model.hpp"
 #include "truss/elements/axial.hpp"
@@ -60,10 +61,8 @@ Temperatures temperatures(const Beam& beam, const ElementState& state) {
 /// Stress-free curvatures about axes 2 and 3 of the frame per ΔT of the gradients' program
 /// [1/(m K)]. A fibre at y and z has the strain κ_y z − κ_z y.
 std::array<double, 2> curvature_per_kelvin(const Beam& beam, const Beam::Frame& frame) {
-  const double about_y = beam.thermal_expansion * beam.gradient_z;
-  const double about_z = -beam.thermal_expansion * beam.gradient_y;
-  if (frame.swapped) return {about_z, -about_y};
-  return {about_y, about_z};
+  return kernel::about_frame(frame.swapped, beam.thermal_expansion * beam.gradient_z,
+                             -beam.thermal_expansion * beam.gradient_y);
 }
 
 /// @param drawn from the first node to the second in the reference configuration [m]
@@ -143,6 +142,18 @@ Vector3d drawn_vector(const Model& model, const Beam& beam) {
          (beam.offset_second - beam.offset_first);
 }
 
+kernel::BeamSection section_of(const Beam& beam) {
+  const auto moments = beam.released_moments();
+  return {beam.axial_stiffness,
+          beam.torsional_stiffness,
+          beam.bending_stiffness_y,
+          beam.bending_stiffness_z,
+          beam.shear_stiffness_y,
+          beam.shear_stiffness_z,
+          {{{beam.released_first_axial, moments[0][0], moments[0][1], moments[0][2]},
+            {beam.released_second_axial, moments[1][0], moments[1][1], moments[1][2]}}}};
+}
+
 /// Whether the rotation of a node acts on an end: by an offset, or by a moment that the end
 /// transmits about an axis about which the node may rotate.
 bool rotates(const Beam::Frame& frame, std::size_t end, const Node& node) {
@@ -159,33 +170,6 @@ bool rotates(const Beam::Frame& frame, std::size_t end, const Node& node) {
     }
   }
   return false;
-}
-
-/// How the rotations of the ends determine the roll of the beam.
-struct Roll {
-  std::array<double, 2> weights;
-  bool by_axis_z;  ///< By axis z of the section, not by axis y.
-};
-
-/// Chooses as many ends as possible, and an axis that their released rotations do not tilt:
-/// released moments about z tilt axis y. An end that releases the torsion is the last choice.
-Roll roll_of(const std::array<std::array<bool, 3>, 2>& released) {
-  for (const bool with_torsion : {false, true}) {
-    Roll best{{0.0, 0.0}, false};
-    double most = 0.0;
-    for (const std::size_t tilting : {std::size_t(2), std::size_t(1)}) {
-      std::array<double, 2> usable{};
-      for (std::size_t end = 0; end < 2; ++end) {
-        usable[end] = !released[end][tilting] && (with_torsion || !released[end][0]) ? 1.0 : 0.0;
-      }
-      const double sum = usable[0] + usable[1];
-      if (sum <= most) continue;
-      most = sum;
-      best = {{usable[0] / sum, usable[1] / sum}, tilting == 1};
-    }
-    if (most > 0.0) return best;
-  }
-  return {{0.5, 0.5}, false};
 }
 
 }  // namespace
@@ -284,29 +268,14 @@ Beam::Frame Beam::frame(const Model& model) const {
              {offset_first, offset_second},
              {},
              false};
-  const bool has_tension = !released_first_axial && !released_second_axial;
-  made.beam.axial = has_tension ? axial_stiffness : 0.0;
-  made.beam.torsional = torsional_stiffness;
-  made.beam.bending = {bending_stiffness_y, bending_stiffness_z};
-  // Bending about y shears along z.
-  made.beam.shear = {shear_stiffness_z, shear_stiffness_y};
-  const Vector3d along = drawn_vector(model, *this).normalized();
-  const Vector3d axis_z = along.cross(axis_y).normalized();
-  made.beam.triad << along, axis_z.cross(along), axis_z;
-  made.beam.released = released_moments();
+  const kernel::PlacedBeam placed =
+      kernel::placed(section_of(*this), drawn_vector(model, *this).normalized(), axis_y);
+  made.beam = placed.beam;
+  made.swapped = placed.swapped;
   for (std::size_t end = 0; end < 2; ++end) {
     const Node& node = end == 0 ? one : other;
-    if (rotates(made, end, node)) continue;
-    made.nodes[2 + end] = -1;
+    if (!rotates(made, end, node)) made.nodes[2 + end] = -1;
   }
-  const Roll roll = roll_of(released_moments());
-  made.beam.roll = roll.weights;
-  made.swapped = roll.by_axis_z;
-  if (!made.swapped) return made;
-  std::swap(made.beam.bending[0], made.beam.bending[1]);
-  std::swap(made.beam.shear[0], made.beam.shear[1]);
-  for (auto& end : made.beam.released) std::swap(end[1], end[2]);
-  made.beam.triad << along, axis_z, -axis_z.cross(along);
   return made;
 }
 
@@ -384,14 +353,7 @@ double Beam::energy(const Frame& frame, const ElementState& state) const {
 
 void Beam::describe(const Frame& frame, const ElementState& state, double* outputs) const {
   Eigen::Map<Vector12> found(outputs);
-  found = step_at(*this, frame, state).gradient_in_frame();
-  found.head<6>() *= -1.0;
-  if (!frame.swapped) return;
-  for (Eigen::Index block = 0; block < 4; ++block) {
-    const double along_y = -found[3 * block + 2];
-    found[3 * block + 2] = found[3 * block + 1];
-    found[3 * block + 1] = along_y;
-  }
+  found = kernel::section_forces(frame.swapped, step_at(*this, frame, state).gradient_in_frame());
 }
 
 void Beam::check_state(const Frame& frame, const ElementState& state) const {

@@ -20,6 +20,7 @@ from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import OnProgress
 from statejump.core.run import Run
+from statejump.kinds.truss import dem_beams
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import check_at_rest
@@ -71,8 +72,10 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
     shortest = links.stress_free_length_m * (1 + links.thermal_expansion_per_K[:, None] * ranges).T.min(axis=0)
     axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2, shortest)
     touch(links.nodes, axial, ratio, case.dem_settings.pin_damping_N_m_s_per_rad / shortest**2)
-    for ends, along in zip(truss.ends()[1:], truss.element_stiffnesses_N_per_m()):
-        touch(ends, along, ratio)
+    for element in ELEMENTS:
+        elements = truss.elements[element.section]
+        if not element.bends:
+            touch(element.ends(elements), element.stiffness_N_per_m(elements), ratio)
     for ends, moment in zip(torsion.links, torsion.stiffness_N_m_per_rad):
         # The angle depends on all ends of both links, so m is their number of moving ends.
         turned = ends[ends != GROUND]
@@ -83,6 +86,8 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
     for joint in JOINTS:
         if len(truss.joints[joint.section].names):
             touch(*joint.contact_stiffness(path, truss.joints[joint.section]), contact)
+    if truss.elements["beam"].names:
+        return dem_beams.stable_time_step_s(stiffness, damping, dem_beams.rates(truss, path, ratio))
     return float(np.min(_engine.critical_time_step_s(1.0, stiffness, damping), initial=inf))
 
 
@@ -183,8 +188,15 @@ def check(case: TrussCase) -> None:
                                        f"{nodes.names[node]!r} a second contact part, in the DEM a node has one",
                                  joint=name, nodes=(nodes.names[node],))
                 roles[node] = role
+    _refuse_rotation(case, dem_beams.refused(truss, set(roles)))
     if truss.dimension == 3:
         _refuse_tilted_torsion(case, truss)
+
+
+def _refuse_rotation(case: TrussCase, found: tuple[str, str] | None) -> None:
+    if found is not None:
+        node, why = found
+        raise refuse(case, "dem_rotation", f"node {node!r} {why}", nodes=(node,))
 
 
 def _torsion(truss: ResolvedTruss) -> Torsion:
@@ -246,18 +258,25 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
     reach = [joint.reach_m(path, truss.joints[joint.section]) for joint in JOINTS]
     groups = np.split(_contact_groups(truss, case, np.concatenate(reach)), np.cumsum([len(own) for own in reach]))
     _refuse_far_turns(case, path)
+    _refuse_rotation(case, dem_beams.refused_on_path(path))
     start = path.states["displacement_m"][0]
     values = yade_process.common_values(case, number_of_steps(case, path))
+    if truss.elements["beam"].names:
+        values["dem"]["stepper"] = "yade"  # the JointStepper has no beams
     return {
         **{key: values[key] for key in ("case", "dem", "number_of_samples")},
         "dimension": truss.dimension,
         "programs": _programs(truss),
         "node": _lists(truss.nodes, blocked=blocked_directions(truss), mass_kg=mass,
-                       start_m=truss.nodes.position_m + start),
+                       start_m=truss.nodes.position_m + start, start_rad=dem_beams.start_rotation_rad(path),
+                       free_rotation=dem_beams.free_rotations(truss),
+                       rotary_inertia_kg_m2=dem_beams.rotary_inertia_kg_m2(truss)),
         "link": _lists(truss.links),
         **{joint.section: _lists(truss.joints[joint.section], **joint.scene(path, truss.joints[joint.section]),
                                  group=group) for joint, group in zip(JOINTS, groups)},
-        **{element.section: _lists(truss.elements[element.section]) for element in ELEMENTS if not element.not_in_dem},
+        **{element.section: _lists(truss.elements[element.section],
+                                   **element.scene(truss, truss.elements[element.section]))
+           for element in ELEMENTS if not element.not_in_dem},
     }
 
 

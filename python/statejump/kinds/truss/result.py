@@ -404,6 +404,10 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
         found = [columns[f"{key}[{name}]{end}"] for name in listed.get(of, ()) for end in ends]
         values = np.stack(found, axis=1) if found else np.zeros((samples, 0))
         items[key] = values.reshape(samples, -1, 3) if vector else values
+    turned = {key: np.stack([columns[f"{key}[{name}]{end}"] for name in listed["nodes"] for end in (".x", ".y", ".z")],
+                            axis=1).reshape(samples, -1, 3)
+              for key in ROTATIONS if f"{key}[{listed['nodes'][0]}].x" in columns}
+    items |= turned
     plain, energy = columns_of({name: values for name, values in columns.items() if "[" not in name})
     summary = {**_start_friction(case.resolve(), items), **numbers_of(about),
                "energy_residue_J": compare.energy_residual(energy)}
@@ -416,7 +420,9 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
                            [called[joint.section, name] for joint in STICKING
                             for name in truss.joints[joint.section].names])
 
-    return _run(case, "dem", plain, energy, items, happened, summary, about=about, warnings=_beyond(case, plain, items))
+    run = _run(case, "dem", plain, energy, items, happened, summary, about=about, warnings=_beyond(case, plain, items))
+    return replace(run, history={**run.history, **{key: Column(values, "rad", "nodes", note="rotation vector")
+                                                   for key, values in turned.items()}})
 
 
 def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:

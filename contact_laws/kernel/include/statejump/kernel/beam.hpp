@@ -61,6 +61,7 @@ class BeamStep {
  public:
   using Vector12 = Eigen::Matrix<double, 12, 1>;
   using Matrix12 = Eigen::Matrix<double, 12, 12>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
 
   /// Largest local rotation of an end that the theory describes [rad].
   static constexpr double largest_rotation = 1.0;
@@ -164,6 +165,65 @@ class BeamStep {
     return made;
   }
 
+  /// Rates of the natural modes (l, s₂, s₃, a₂, a₃, τ) [m/s, rad/s].
+  /// @param velocities velocity [m/s] and spin [rad/s] of the first end, then of the second, world
+  ///     axes
+  Vector6 mode_rates(const Vector12& velocities) const {
+    Vector12 local;
+    for (int k = 0; k < 4; ++k) {
+      local.segment<3>(3 * k) = frame_.transpose() * velocities.segment<3>(3 * k);
+    }
+    const Vector3 apart = (local.segment<3>(6) - local.segment<3>(0)) / length_;
+    Vector3 spin(0.0, -apart.z(), apart.y());
+    spin.x() = mean_.x() / mean_.y() * spin.y();
+    for (int i = 0; i < 2; ++i) {
+      const auto end = static_cast<std::size_t>(i);
+      const Vector3 own = local.segment<3>(3 + 6 * i);
+      spin.x() +=
+          beam_->roll[end] / mean_.y() * (axis_[end].y() * own.x() - axis_[end].x() * own.y());
+    }
+    const Vector3 first = map_[0] * (local.segment<3>(3) - spin);
+    const Vector3 second = map_[1] * (local.segment<3>(9) - spin);
+    Vector6 made;
+    made << local[6] - local[0], 0.5 * (first.tail<2>() - second.tail<2>()),
+        0.5 * (first.tail<2>() + second.tail<2>()), second.x() - first.x();
+    return made;
+  }
+  /// Stiffnesses of the natural modes at the present tension [N/m, N m].
+  Vector6 mode_stiffness() const {
+    Vector6 made;
+    made[0] = beam_->axial / at_.free_length;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::array<double, 2> plane = plane_stiffness(k, natural_[0]);
+      made[symmetric_row(k)] = plane[0];
+      made[antisymmetric_row(k)] = plane[1];
+    }
+    made[5] = torsional() / at_.free_length;
+    return made;
+  }
+  /// Whether the mode exists: no rotation about its axis is released.
+  bool has_mode(Eigen::Index mode) const {
+    if (mode == 0) return beam_->axial > 0.0;
+    if (mode == 5) return has_torsion();
+    const auto k = static_cast<std::size_t>((mode - 1) % 2);
+    return !is_released(0, k) && !is_released(1, k);
+  }
+  /// Forces and moments of the ends, as in_frame(), that balance forces on the natural modes.
+  Vector12 balance_in_frame(const Vector6& natural) const {
+    Vector7 made = to_local(natural);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto row = 1 + 3 * static_cast<Eigen::Index>(i);
+      made.segment<3>(row) = (map_[i].transpose() * made.segment<3>(row)).eval();
+    }
+    return in_frame(made);
+  }
+  /// Forces and moments in world axes for those in the axes of the frame.
+  Vector12 to_world(const Vector12& in_frame) const {
+    Vector12 made;
+    for (int k = 0; k < 4; ++k) made.segment<3>(3 * k) = frame_ * in_frame.segment<3>(3 * k);
+    return made;
+  }
+
   /// ∂W/∂l_T at fixed ends and stress-free curvature [N].
   double by_length() const {
     const double free = at_.free_length;
@@ -211,7 +271,6 @@ class BeamStep {
   }
 
  private:
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Vector7 = Eigen::Matrix<double, 7, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Matrix7 = Eigen::Matrix<double, 7, 7>;
@@ -524,12 +583,6 @@ class BeamStep {
     made.middleRows<3>(4) = -spin;
     made.block<3, 3>(1, 3) += Matrix3::Identity();
     made.block<3, 3>(4, 9) += Matrix3::Identity();
-    return made;
-  }
-
-  Vector12 to_world(const Vector12& in_frame) const {
-    Vector12 made;
-    for (int k = 0; k < 4; ++k) made.segment<3>(3 * k) = frame_ * in_frame.segment<3>(3 * k);
     return made;
   }
 

@@ -90,12 +90,13 @@ struct Energies {
   double link_damping = 0, pin_damping = 0, link_thermal_work = 0;
   double torsion_friction = 0;
   double prismatic_friction = 0, prismatic_damping = 0;
+  double beam_damping = 0, beam_thermal_work = 0;
   double numerical_damping = 0, gravity_work = 0;
 };
 
 /// Elastic energies stored in the scene at one step [J].
 struct StoredEnergies {
-  double joint = 0, link = 0, torsion = 0, prismatic = 0;
+  double joint = 0, link = 0, torsion = 0, prismatic = 0, beam = 0;
 };
 
 /// Bodies on which an object acts.

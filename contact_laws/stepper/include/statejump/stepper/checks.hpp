@@ -15,6 +15,7 @@
 
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "statejump/kernel/vector.hpp"
+#include "statejump/stepper/beam_bond.hpp"
 #include "statejump/stepper/link.hpp"
 #include "statejump/stepper/prismatic.hpp"
 
@@ -101,6 +102,18 @@ inline bool has_stop_without_stiffness(const Prismatic& joint) {
   return std::isfinite(std::min(joint.clearanceMinus, joint.clearancePlus)) &&
          !(joint.stopStiffness + joint.stopSpring > 0);
 }
+
+/// Parameters of an active beam. Shear stiffnesses are > 0, and infinite without shear deformation.
+constexpr Quantities<BeamBond, 9> beam_quantities = {
+    {{"axialStiffness", &BeamBond::axialStiffness, ValueRange::positive, "N"},
+     {"torsionalStiffness", &BeamBond::torsionalStiffness, ValueRange::positive, "N m2"},
+     {"bendingStiffnessY", &BeamBond::bendingStiffnessY, ValueRange::positive, "N m2"},
+     {"bendingStiffnessZ", &BeamBond::bendingStiffnessZ, ValueRange::positive, "N m2"},
+     {"stressFreeLength", &BeamBond::stressFreeLength, ValueRange::positive, "m"},
+     {"thermalExpansion", &BeamBond::thermalExpansion, ValueRange::finite, "1/K"},
+     {"gradientY", &BeamBond::gradientY, ValueRange::finite, "1/m"},
+     {"gradientZ", &BeamBond::gradientZ, ValueRange::finite, "1/m"},
+     {"dampingRatio", &BeamBond::dampingRatio, ValueRange::not_negative, "-"}}};
 
 /// Parameters of a contact that touches; Physics is ContactPhysics or JointPhys.
 template <class Physics>

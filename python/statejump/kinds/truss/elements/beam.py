@@ -181,7 +181,7 @@ def eccentric(items: Sequence[Beam], dimension: int) -> tuple[str, ...]:
 
 
 class BeamType(BetweenNodes[Beam, Beams]):
-    """Beams, supported by the reduced models."""
+    """Beams, supported by the reduced models and the DEM."""
 
     section = "beam"
     Item = Beam
@@ -192,7 +192,6 @@ class BeamType(BetweenNodes[Beam, Beams]):
         ItemColumn("beam_force_second_N", "section force at the second end along x, y, z; tension positive", True),
         ItemColumn("beam_moment_second_N_m", "section moment at the second end about x, y, z", True),
     )
-    not_in_dem = "bends, the DEM has no beams yet"
     bends = True
     has_section = True
     has_temperature = True
@@ -315,6 +314,10 @@ class BeamType(BetweenNodes[Beam, Beams]):
 
     def tension_N(self, elements: Beams, states: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.asarray(states["beam_force_second_N"][..., 0])
+
+    def scene(self, truss: ResolvedTruss, elements: Beams) -> dict[str, Any]:
+        return {"axis_x": unit(_between(truss.nodes.position_m, elements.nodes, elements.offset_first_m,
+                                        elements.offset_second_m))}
 
     def lines(self, elements: Beams) -> list[Lines]:
         return [Lines(np.full(len(elements.names), True), VIOLET, "beam", width=3.0)]

@@ -127,6 +127,10 @@ class ElementType(PartType[ItemType, ArraysType]):
 
     # ---------------------------------------------------------------- DEM
 
+    def scene(self, truss: ResolvedTruss, elements: ArraysType) -> dict[str, Any]:
+        """Return values for the scene of the DEM that are not fields of the type's arrays."""
+        return {}
+
     def dem_refuses(self, elements: ArraysType) -> tuple[str, str, str] | None:
         """Return name, error code and reason for one element that the DEM cannot represent; None if there is none."""
         return None
