@@ -123,6 +123,7 @@ class Verdict:
     :param slips: of every joint, whether it may slip; None: unknown
     :param mechanism: motion that may ratchet
     :param drift_m: its drift per cycle of the case, simulated; NaN: not simulated
+    :param certified: whether it is proved for the linear truss; an estimate otherwise
     """
 
     kind: str
@@ -132,10 +133,12 @@ class Verdict:
     slips: np.ndarray | None = None
     mechanism: str = ""
     drift_m: float = nan
+    certified: bool = True
 
     def record(self) -> dict[str, Any]:
         """Return the verdict as plain values."""
-        return {"kind": self.kind, "text": self.text, "limiting_joint": self.limiting,
+        return {"kind": self.kind, "certified": self.certified and self.kind != "unknown", "text": self.text,
+                "limiting_joint": self.limiting,
                 "factor": self.factor if np.isfinite(self.factor) else None, "mechanism": self.mechanism,
                 "drift_m": None if np.isnan(self.drift_m) else self.drift_m,
                 "slips": None if self.slips is None else [bool(one) for one in self.slips]}

@@ -45,7 +45,7 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
     box = None if range_K is None else parsed_range(range_K)
     output = [output] if isinstance(output, str) else output
     if with_clearance(case):
-        return bounds_of_clearance(case, output, box, simulate)
+        return bounds_of_clearance(case, output, box, attain, simulate)
     try:
         of = sliding(case)
     except StatejumpError:  # also EngineFailed
