@@ -3,10 +3,10 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/bounds.py [--largest 100000] [--outputs 10]
 
-A row of nodes T stands on columns from fixed nodes B. Between each two of them stands a foot F that slides with friction,
-scattered from foot to foot. Nodes, links and sliders are read from HDF5 tables. Each row is computed in two separate processes, one for the bounds of all outputs
-and one for a path of one cycle with ten points for heating and ten for cooling. Writes results/bench/bounds.md after
-every row.
+A row of nodes T stands on columns from fixed nodes B. Between each two of them stands a foot F that slides with
+friction, scattered from foot to foot. Nodes, links and sliders are read from HDF5 tables. Each row is computed in two
+processes, one for the bounds of all outputs and one for a path of one cycle with ten points for heating and ten for
+cooling. Writes results/bench/bounds.md after every row.
 """
 from __future__ import annotations
 

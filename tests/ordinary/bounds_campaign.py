@@ -7,8 +7,8 @@
 
 Family and seed determine a structure and its histories. ``--count`` structures of each class are compared. For class B,
 sliders get stops within their reach. A state outside of a bound plus its margin, or outside of the bound within the
-range of its temperatures, is printed, and the exit status is 1. The table has, by class, the structures, their histories,
-the states outside, and the medians of reached/bound, attained/bound (``--attain``) and simulated/bound.
+range of its temperatures, is printed, and the exit status is 1. The table has, by class, the structures, their
+histories, the states outside, and the medians of reached/bound, attained/bound (``--attain``) and simulated/bound.
 """
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ from statejump.kinds.truss.bounds.sliding import sliding
 from statejump.kinds.truss.bounds.study import bounds
 from statejump.kinds.truss.solve import solve
 
-FIELDS = ("family", "seed", "class", "quality", "output", "spread_m", "margin_m", "reached_m", "attained_m", "simulated_m",
-          "range_m", "in_range_m", "verdict", "states", "outside")
+FIELDS = ("family", "seed", "class", "quality", "output", "spread_m", "margin_m", "reached_m", "attained_m",
+          "simulated_m", "range_m", "in_range_m", "verdict", "states", "outside")
 LEGS = 5  # temperatures of each member in a history
 ROUNDING = 1e-6  # of the spread
 LEAST_m = 1e-13

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether joints of a truss with clearance revolutes slip or settle within a temperature range: an estimate.
 
-About the start of the case, where all joints stick, contact forces λ and friction f are linear in the temperatures T and
-in the slips p. By Melan's program, joints settle up to the factor
+About the start of the case, where all joints stick, contact forces λ and friction f are linear in the temperatures T
+and in the slips p. By Melan's program, joints settle up to the factor
 
     η = max {η : |f| <= μ λ for all T, (λ, f) = (λ0, f0) + η (N, F) T + M p}.
 
-With friction limits that depend on contact forces this is necessary, not sufficient (Klarbring, Ciavarella, Barber, Int.
-J. Solids Struct. 44 (2007) 8355). With the least contact forces of all states, μ λ_min, it is sufficient in the linear
-truss. Neither is ever called certified.
+With friction limits that depend on contact forces this is necessary, not sufficient (Klarbring, Ciavarella, Barber,
+Int. J. Solids Struct. 44 (2007) 8355). With the least contact forces of all states, μ λ_min, it is sufficient in the
+linear truss. Neither is ever called certified.
 """
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def rest_state(of: Clearances, share: np.ndarray, other_N: np.ndarray, start: Re
 
 
 def balance(of: Clearances, angle: np.ndarray, normal: np.ndarray, share: np.ndarray, other_N: np.ndarray
-             ) -> tuple[np.ndarray, np.ndarray]:
+            ) -> tuple[np.ndarray, np.ndarray]:
     """Return q(x) + λ n − f t (2 m,) and its derivatives by angles and normal forces."""
     count = of.count
     tan = np.tan(share * of.friction_angle_rad)

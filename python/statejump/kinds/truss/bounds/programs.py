@@ -10,6 +10,7 @@ from scipy.optimize import linprog
 INFEASIBLE = 2  # status of linprog
 ROUNDED = 1e-9  # violation of a row, over the size of its terms
 
+
 @dataclass(frozen=True)
 class Polytope:
     """Variables x with lowest <= x <= highest, all finite, and least <= rows x <= most."""

@@ -19,10 +19,11 @@ RUBS = 1e-6  # heat of the last cycle over that of all cycles, above which joint
 STILL = 1e-6  # drift of the last cycle over the largest displacement, below which the shape repeats
 
 
-def simulated(case: TrussCase, whole: bool | None) -> np.ndarray:
+def simulated(case: TrussCase, whole: bool | None, free_m: np.ndarray | None = None) -> np.ndarray:
     """Return the displacements (states, nodes, 3) of the path of a case, or of its start alone.
 
     :param whole: whether to simulate the path; None: with at most MOST_SIMULATED joints, and if it exists
+    :param free_m: displacements (nodes, 3) of the equilibrium without friction
     """
     truss = case.resolve()
     if whole or (whole is None and sum(len(joints.names) for joints in truss.joints.values()) <= MOST_SIMULATED):
@@ -31,6 +32,8 @@ def simulated(case: TrussCase, whole: bool | None) -> np.ndarray:
         except FailedRun:  # bounds do not need the path
             if whole:
                 raise
+    if free_m is not None and not free_m.any():  # joints carry nothing, so the start is this equilibrium
+        return np.zeros((1, *free_m.shape))
     return np.asarray(start_of(truss, progress=lambda share: share <= 0).states["displacement_m"][:1])
 
 
@@ -49,8 +52,9 @@ class Repeated:
     @property
     def text(self) -> str:
         """What the simulation shows."""
-        what = (f"the shape changes by {1e6 * self.drift_m:.3g} µm" if self.drifts else "joints rub and the shape repeats" if self.rubs
-                else "no joint slips")
+        what = "joints rub and the shape repeats" if self.rubs else "no joint slips"
+        if self.drifts:
+            what = f"the shape changes by {1e6 * self.drift_m:.3g} µm"
         return f"simulated: {what} in cycle {CYCLES} of the case"
 
 

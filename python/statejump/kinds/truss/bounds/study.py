@@ -12,6 +12,7 @@ from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.bounds.branches import parts_of
 from statejump.kinds.truss.bounds.contacts import bounds_of_clearance, with_clearance
 from statejump.kinds.truss.bounds.extremes import farthest, zonogon
+from statejump.kinds.truss.bounds.gradients import by_stiffness, stiffness_names
 from statejump.kinds.truss.bounds.history import MOST_K, attained
 from statejump.kinds.truss.bounds.hot import Hot, changes_branch, within_stops
 from statejump.kinds.truss.bounds.margin import Margin, margin
@@ -66,8 +67,8 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
     hot, by_part = _hot(of, temperatures)
     if hot is not None:
         facts.append("stops, plays or cables may change their state within the range of the temperatures")
-    path = simulated(case, simulate)
-    made, histories = [], {}
+    path = simulated(case, simulate, of.displacement_m)
+    made, histories, elements = [], {}, stiffness_names(of)
     for one in outputs:
         rows = one.rows(of)
         gains, thermal = of.gains_of(rows)
@@ -90,12 +91,13 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
             attained=nan if reached is None else reached.spread, fraction=parts / (parts.sum() or 1.0),
             peak_thermal=temperatures.peak(thermal),
             corners=zonogon(gains * of.limit_N) if len(rows) == 2 and len(of.joints) <= MOST_SIMULATED else None,
-            path=one.vector(path) - one.vector(of.displacement_m)))
+            path=one.vector(path) - one.vector(of.displacement_m),
+            by_stiffness=by_stiffness(of, direction @ rows, direction @ gains) if elements else None))
     shows = box is not None and np.isfinite(found.verdict.factor)
     return Bounds(
         of.truss, "A", exact.quality, exact.why, facts, made, [str(joint) for joint in of.joints], of.limit_N,
         found.verdict if hot is None else hot.verdict, temperatures, histories,
-        partial(_over_range, of, temperatures, found, made[0]) if shows else None)
+        partial(_over_range, of, temperatures, found, made[0]) if shows else None, elements=elements)
 
 
 def _hot(of: Sliding, temperatures: Temperatures) -> tuple[Hot | None, np.ndarray]:
