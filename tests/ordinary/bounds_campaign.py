@@ -3,16 +3,18 @@
 """Compares bounds of many ordinary structures with the rest states after random temperature histories.
 
     PYTHONPATH=build/python tests/ordinary/bounds_campaign.py [--count 100] [--seed 1] [--histories 7] [--families ...]
-        [--classes A B C] [--limit 60] [--out rows.csv]
+        [--classes A B C] [--limit 60] [--attain] [--out rows.csv]
 
-Family and seed determine a structure and its histories. ``--count`` structures of each class are compared. A state
-outside of a bound plus its margin is printed, and the exit status is 1. The table has, by class, the structures, their
-histories, the states outside, and the medians of reached/bound and simulated/bound.
+Family and seed determine a structure and its histories. ``--count`` structures of each class are compared. For class B,
+sliders get stops within their reach. A state outside of a bound plus its margin, or outside of the bound within the
+range of its temperatures, is printed, and the exit status is 1. The table has, by class, the structures, their
+histories, the states outside, and the medians of reached/bound, attained/bound (``--attain``) and simulated/bound.
 """
 from __future__ import annotations
 
 import argparse
 import csv
+import os
 import signal
 import sys
 from collections import Counter
@@ -26,11 +28,12 @@ import statejump as sj
 import structures
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.bounds.result import Bounds
+from statejump.kinds.truss.bounds.sliding import sliding
 from statejump.kinds.truss.bounds.study import bounds
 from statejump.kinds.truss.solve import solve
 
-FIELDS = ("family", "seed", "class", "quality", "output", "spread_m", "margin_m", "reached_m", "simulated_m", "states",
-          "outside")
+FIELDS = ("family", "seed", "class", "quality", "output", "spread_m", "margin_m", "reached_m", "attained_m",
+          "simulated_m", "range_m", "in_range_m", "verdict", "states", "outside")
 LEGS = 5  # temperatures of each member in a history
 ROUNDING = 1e-6  # of the spread
 LEAST_m = 1e-13
@@ -51,6 +54,34 @@ def history(document: dict[str, Any], rng: np.random.Generator, most_K: float) -
     return made
 
 
+def with_stops(document: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
+    """Return a structure whose sliders have stops that are within the reach of friction."""
+    reach = {joint: half for joint, half in _reach_m(sj.load(document))}
+    made = deepcopy(document)
+    for slider in made["slider"]:
+        half = reach.get(slider["name"], 0.0)
+        if half > 0:
+            slider[f"clearance_{rng.choice(['plus', 'minus'])}_m"] = float(10 ** rng.uniform(-1.2, 0.2)) * half
+    return made
+
+
+def _reach_m(case: Any) -> Iterator[tuple[str, float]]:
+    of = sliding(case)
+    half = np.abs(of.compliance) @ of.limit_N
+    for joint, slide, one in zip(of.joints, of.slide_m, half):
+        if joint.section == "slider":
+            yield joint.name, float(abs(slide) + one)
+
+
+def structure(family: str, seed: int, letter: str) -> dict[str, Any]:
+    """Return the document of a structure."""
+    document: dict[str, Any] = structures.make(family, seed).document
+    if letter == "B" and document.get("slider") and not any("clearance_plus_m" in one or "clearance_minus_m" in one
+                                                            for one in document["slider"]):
+        return with_stops(document, np.random.default_rng([seed, 11]))
+    return document
+
+
 def rest_states(document: dict[str, Any], rng: np.random.Generator, histories: int) -> np.ndarray:
     """Return displacements (states, nodes, 3) at the start and at the ends of histories that have a path."""
     found = []
@@ -63,17 +94,36 @@ def rest_states(document: dict[str, Any], rng: np.random.Generator, histories: i
     return np.concatenate(found) if found else np.zeros((0, 0, 3))
 
 
-def rows_of(family: str, seed: int, found: Bounds, states: np.ndarray) -> Iterator[Row]:
-    """Yield a row for each output."""
-    for bound in found.bounds:
+def within_range(document: dict[str, Any], rng: np.random.Generator, name: str) -> tuple[float, float, str]:
+    """Return the range bound of an output, what a random history within the range changes it by, and the verdict."""
+    most_K = float(10 ** rng.uniform(0.3, 1.8))
+    found = bounds(sj.load(document), [name], (-most_K, most_K), simulate=False)
+    bound = found.bounds[0]
+    try:
+        states = solve(sj.load(history(document, rng, most_K))).states["displacement_m"][[0, -1]]
+    except StatejumpError:
+        return bound.range_spread, 0.0, found.verdict.kind
+    return bound.range_spread, bound.output.change(*states), found.verdict.kind
+
+
+def rows_of(family: str, seed: int, found: Bounds, states: np.ndarray, attained: float = np.nan,
+            ranged: tuple[float, float, str] = (np.nan, 0.0, "")) -> Iterator[Row]:
+    """Yield a row for each output.
+
+    :param attained: spread of the history that attains the first bound; ``ranged``: see :func:`within_range`
+    """
+    for number, bound in enumerate(found.bounds):
         values = bound.output.vector(states)
         changes = np.linalg.norm(values[:, None] - values[None], axis=-1) if len(states) else np.zeros((1, 1))
         margin = 0.0 if np.isnan(bound.margin) else bound.margin
         most = bound.spread * (1 + ROUNDING) + margin + LEAST_m
         yield {"family": family, "seed": seed, "class": found.letter, "quality": found.quality,
                "output": bound.output.name, "spread_m": bound.spread, "margin_m": margin, "reached_m": bound.reached,
-               "simulated_m": float(changes.max()), "states": len(states),
-               "outside": int((changes > most).any() and np.isfinite(most))}
+               "attained_m": np.nan if number else attained, "simulated_m": float(changes.max()),
+               "range_m": np.nan if number else ranged[0], "in_range_m": 0.0 if number else ranged[1],
+               "verdict": "" if number else ranged[2], "states": len(states),
+               "outside": int((changes > most).any() and np.isfinite(most))
+               + int(not number and (attained > most or ranged[1] > ranged[0] * (1 + ROUNDING) + margin + LEAST_m))}
 
 
 class Expired(Exception):
@@ -88,44 +138,58 @@ def compared(arguments: argparse.Namespace, reasons: Counter[str]) -> Iterator[R
     """Yield rows until every class has its number of structures."""
     signal.signal(signal.SIGALRM, _expire)
     missing = dict.fromkeys(arguments.classes, arguments.count)
-    for seed in range(arguments.seed, arguments.seed + arguments.most):
-        for family in arguments.families:
-            if not any(missing.values()):
-                return
-            signal.alarm(arguments.limit)
-            try:
-                document = structures.make(family, seed).document
-                found = bounds(sj.load(document), simulate=False)
-                if not missing.get(found.letter) or not found.bounds:
-                    continue
-                rng = np.random.default_rng([seed, 7])
-                states = rest_states(document, rng, arguments.histories)
-            except StatejumpError as refused:
-                reasons[getattr(refused, "code", "") or str(refused)] += 1
+    tried = ((seed, family, letter) for seed in range(arguments.seed, arguments.seed + arguments.most)
+             for family in arguments.families for letter in arguments.classes)
+    for seed, family, letter in tried:
+        if not any(missing.values()):
+            return
+        if not missing[letter]:
+            continue
+        signal.alarm(arguments.limit)
+        try:
+            document = structure(family, seed, letter)
+            found = bounds(sj.load(document), simulate=False)
+            if found.letter != letter or not found.bounds or not any(one.spread > LEAST_m for one in found.bounds):
                 continue
-            except Expired:
-                reasons["limit of time"] += 1
-                continue
-            finally:
-                signal.alarm(0)
-            missing[found.letter] -= 1
-            yield from rows_of(family, seed, found, states)
+            rng = np.random.default_rng([seed, 7])
+            states = rest_states(document, rng, arguments.histories)
+            attained, ranged = np.nan, (np.nan, 0.0, "")
+            if arguments.attain:
+                name = found.bounds[0].output.name
+                attained = bounds(sj.load(document), [name], attain=True, simulate=False).bounds[0].attained
+                ranged = within_range(document, rng, name)
+        except StatejumpError as refused:
+            reasons[getattr(refused, "code", "") or str(refused)] += 1
+            continue
+        except Expired:
+            reasons["limit of time"] += 1
+            continue
+        finally:
+            signal.alarm(0)
+        missing[letter] -= 1
+        yield from rows_of(family, seed, found, states, attained, ranged)
 
 
 def table(rows: list[Row]) -> str:
     """Return the results by class."""
-    lines = ["| class | quality | structures | states | outside | reached/bound, median | simulated/bound, median |",
-             "|---|---|---|---|---|---|---|"]
+    lines = ["| class | quality | structures | states | outside | reached/bound, median | attained/bound, median | "
+             "simulated/bound, median |", "|---|---|---|---|---|---|---|---|"]
     for letter, quality in sorted({(row["class"], row["quality"]) for row in rows}):
         ours = [row for row in rows
                 if (row["class"], row["quality"]) == (letter, quality) and LEAST_m < row["spread_m"] < np.inf]
         if not ours:
             continue
         structures_ = {(row["family"], row["seed"]): row["states"] for row in ours}
-        ratios = [np.nanmedian([row[key] / row["spread_m"] for row in ours]) for key in ("reached_m", "simulated_m")]
+        ratios = [_median([row[key] / row["spread_m"] for row in ours])
+                  for key in ("reached_m", "attained_m", "simulated_m")]
         lines.append(f"| {letter} | {quality} | {len(structures_)} | {sum(structures_.values())} | "
-                     f"{sum(row['outside'] for row in ours)} | {ratios[0]:.4f} | {ratios[1]:.4f} |")
+                     f"{sum(row['outside'] for row in ours)} | " + " | ".join(ratios) + " |")
     return "\n".join(lines)
+
+
+def _median(ratios: list[float]) -> str:
+    known = [ratio for ratio in ratios if not np.isnan(ratio)]
+    return f"{np.median(known):.4f}" if known else ""
 
 
 def main() -> int:
@@ -138,20 +202,21 @@ def main() -> int:
     parser.add_argument("--families", nargs="+", default=list(structures.SHAPES))
     parser.add_argument("--classes", nargs="+", default=["A", "B", "C"])
     parser.add_argument("--limit", type=int, default=60, help="of a structure [s]")
+    parser.add_argument("--attain", action="store_true", help="also attain the first bound, and check a range")
     parser.add_argument("--out", default="")
     arguments = parser.parse_args()
     rows, reasons = [], Counter[str]()
-    for row in compared(arguments, reasons):
-        rows.append(row)
-        if row["outside"]:
-            print("outside:", row, flush=True)
+    with open(arguments.out or os.devnull, "w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, FIELDS)
+        writer.writeheader()
+        for row in compared(arguments, reasons):
+            rows.append(row)
+            writer.writerow(row)
+            stream.flush()
+            if row["outside"]:
+                print("outside:", row, flush=True)
     print(table(rows))
     print("not compared:", ", ".join(f"{number} × {reason}" for reason, number in reasons.most_common(12)))
-    if arguments.out:
-        with open(arguments.out, "w", newline="", encoding="utf-8") as stream:
-            writer = csv.DictWriter(stream, FIELDS)
-            writer.writeheader()
-            writer.writerows(rows)
     return int(any(row["outside"] and row["quality"] != "estimate" for row in rows))
 
 

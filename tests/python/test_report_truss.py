@@ -197,3 +197,10 @@ def test_case_in_words(kind: str, facts: dict[str, list[float]]) -> None:
         (sentence,) = [one for one in described if word in one]
         assert [float(number) for number in re.findall(r"\d+(?:\.\d+)?", sentence)] == numbers, sentence
     assert "100\u202fK" in described[-1]
+
+
+def test_the_page_shows_the_bounds_of_a_truss(statejump: Callable[..., Outcome], results: Path) -> None:
+    found, _ = written(statejump, results / "chain_10")
+    assert "Bounds of the state jump" in found.words and "Class A, exact" in found.words
+    assert units.text(3217.5e-6, "m", 4) in found.words
+    assert sum(address.startswith("data:image/png") for address in found.addresses) == 2

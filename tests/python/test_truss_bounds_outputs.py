@@ -2,6 +2,7 @@
 """Bounds of vector outputs of trusses: surfaces, nodes in a plane; largest norms over boxes."""
 from __future__ import annotations
 
+from copy import deepcopy
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from statejump.kinds.truss.bounds.sliding import sliding
 from statejump.kinds.truss.bounds.study import bounds
 from statejump.kinds.truss.generate.document import document, finished, node
 from statejump.surface import pointing_rad
-from test_truss_bounds import BAR, chain, heated
+from test_truss_bounds import BAR, chain, heated, lattice
 
 
 def dish(rng: np.random.Generator, feet: int = 6) -> Any:
@@ -123,3 +124,27 @@ def test_surfaces_and_their_outputs_are_refused_by_name() -> None:
     for output in ("rms:x", "tilt:1", "zernike:0", "zernike:99", "point:1,0", "point:a", "edge:P0"):
         with failing("bounds_bad_output"):
             bounds(case, [output], simulate=False)
+
+
+@pytest.mark.parametrize("output", ["node:N20.y", "node:N21.xy"])
+def test_gradients_are_those_of_differences(output: str) -> None:
+    case = lattice(np.random.default_rng(3))
+    for one in case["node"]:
+        one.pop("force_N", None)  # forces would change the equilibrium and its geometric stiffness
+    found = bounds(sj.load(case), [output], simulate=False)
+    bound, record = found.bounds[0], found.record()
+    step = 1e-4
+    for number, link in enumerate(case["link"][:4]):
+        spreads = []
+        for factor in (1 + step, 1 - step):
+            changed = deepcopy(case)
+            changed["link"][number]["cross_section_area_m2"] *= factor
+            spreads.append(bounds(sj.load(changed), [output], simulate=False).bounds[0].spread_m)
+        slope = (spreads[0] - spreads[1]) / (2 * step)
+        assert bound.by_stiffness[number] == pytest.approx(slope, rel=1e-4, abs=1e-6 * bound.spread_m)
+        assert record["elements"][number]["element"] == f"link '{link['name']}'"
+    weaker = deepcopy(case)
+    weaker["slider"][0]["friction_coefficient"] *= 1 - step
+    drop = bound.spread_m - bounds(sj.load(weaker), [output], simulate=False).bounds[0].spread_m
+    limit = record["joints"][0]["friction_limit_N"]
+    assert record["joints"][0]["spread_by_limit"][output] * limit * step == pytest.approx(drop, rel=1e-3)

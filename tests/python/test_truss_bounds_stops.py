@@ -14,7 +14,7 @@ from statejump.kinds.truss.bounds.stops import Programs, clipped, farthest_branc
 from statejump.kinds.truss.bounds.study import bounds
 from statejump.kinds.truss.bounds.switching import switching
 from statejump.kinds.truss.solve import solve
-from test_truss_bounds import STIFFNESS, chain, heated, lattice
+from test_truss_bounds import FREE_m_per_K, STIFFNESS, chain, heated, lattice
 
 
 def stopped(*limits_N: float, **stops: float) -> dict[str, Any]:
@@ -145,3 +145,42 @@ def test_no_random_history_leaves_the_bounds(seed: int) -> None:
         assert np.ptp(values) <= bound.spread_m + slack
         assert np.abs(values - values[0]).max() <= bound.jump_m + slack
         assert bound.reached_m >= 0.9 * bound.spread_m
+
+
+@pytest.mark.parametrize("share", [0.99, 1.2, 1.7, 4.0])
+def test_range_bounds_of_one_bar_with_a_stop(share: float) -> None:
+    limit_N, reach_m = 30.0, 30.0 / STIFFNESS
+    first_K = reach_m / FREE_m_per_K  # slip begins
+    stop_m = 0.4 * reach_m
+    case = stopped(limit_N, clearance_plus_m=stop_m)
+    found = bounds(sj.load(case), ["node:N1.x"], range_K=(0.0, share * first_K), simulate=False)
+    bound = found.bounds[0]
+    assert found.letter == "B" and found.verdict.kind == ("never_slips" if share < 1 else "bounded")
+    # The block slips to the stop or to (share − 1) reach. It keeps at most f/k while it cools; it never goes below 0.
+    slipped_m = min(max(share - 1, 0.0) * reach_m, stop_m)
+    assert bound.range_spread_m == pytest.approx(slipped_m, rel=1e-4, abs=1e-13)
+
+
+def test_a_range_that_reaches_a_stop_while_hot_uses_programs_with_stops() -> None:
+    limit_N, reach_m = 30.0, 30.0 / STIFFNESS
+    case = stopped(limit_N, clearance_plus_m=1.5 * reach_m)  # never reached at the reference temperature
+    wide = bounds(sj.load(case), ["node:N1.x"], range_K=(0.0, 4 * reach_m / FREE_m_per_K), simulate=False)
+    assert wide.letter == "A" and wide.verdict.kind == "bounded"
+    assert wide.bounds[0].range_spread_m == pytest.approx(reach_m, rel=1e-4)
+    low = bounds(sj.load(case), ["node:N1.x"], range_K=(0.0, 0.4 * reach_m / FREE_m_per_K), simulate=False)
+    assert low.verdict.kind == "never_slips" and np.isfinite(low.verdict.factor)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_random_history_leaves_its_range_bounds(seed: int) -> None:
+    rng = np.random.default_rng(40 + seed)
+    made, most_K = random_stops(rng), float(10 ** rng.uniform(0.3, 1.3))
+    found = bounds(sj.load(made), range_K=(-most_K, most_K), simulate=False)
+    states = np.concatenate([solve(sj.load(heated(made, rng, most_K))).states["displacement_m"][[0, -1]]
+                             for _ in range(3)])
+    for bound in found.bounds:
+        values = bound.output.value(states)
+        slack = bound.margin_m + 1e-7 * bound.spread_m
+        if np.isfinite(bound.range_spread_m):
+            assert np.ptp(values) <= bound.range_spread_m + slack
+            assert np.abs(values - values[0]).max() <= bound.range_jump_m + slack

@@ -5,6 +5,7 @@ Figures are made without pyplot, so the caller's backend and open figures do not
 """
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -124,6 +125,14 @@ def drawn(case: Case, runs: Sequence[Run], axes: Axes | Sequence[Axes] | None = 
                 draw(place)
         figure.suptitle(sheet.title, fontsize=11)
     return figure
+
+
+def embedded(figure: Figure) -> str:
+    """Return a figure as a data address of a picture."""
+    stream = BytesIO()
+    with style():
+        figure.savefig(stream, format="png", dpi=160)
+    return "data:image/png;base64," + b64encode(stream.getvalue()).decode("ascii")
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:

@@ -2,15 +2,13 @@
 """Page of a case that has not been solved: description, drawing, all inputs."""
 from __future__ import annotations
 
-import base64
 import json
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
-from statejump.core.figures import style
+from statejump.core.figures import embedded, style
 from statejump.kinds import has, require
 from statejump.report import labels
 from statejump.report.capabilities import CaseDrawing
@@ -44,10 +42,8 @@ class UnsolvedDocument:
     @property
     def picture(self) -> str:
         """The drawing as a data address."""
-        stream = BytesIO()
         with style():
-            require(self._case, CaseDrawing).draw(self._case).savefig(stream, format="png", dpi=160)
-        return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
+            return embedded(require(self._case, CaseDrawing).draw(self._case))
 
     def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
         """Return the sections of the case with all defaults, as pairs of key and value."""

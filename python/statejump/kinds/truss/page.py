@@ -21,6 +21,7 @@ from statejump.core.units import scale_of, text, unit_of
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.page_bounds import page_bounds
 from statejump.kinds.truss.result import names as names_of
 from statejump.kinds.truss.scales import scales
 from statejump.kinds.truss.summary import is_guided, is_held
@@ -90,6 +91,7 @@ class TrussPart:
         self._size_m = np.linalg.norm(self.node_jumps[-1], axis=1)
         self.joints = self._joints()
         self.measures = self._measures()
+        self.bounds = page_bounds(case, self._run.history["displacement_m"].values)
         self.columns = {model: self._curves(run) for model, run in result.models.items()}
 
     def _cycle_ends(self, run: Run) -> np.ndarray:

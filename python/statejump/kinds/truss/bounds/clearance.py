@@ -45,6 +45,9 @@ class Clearances:
     joints: Sequence[Joint]
     by_state: np.ndarray
     force_by_state: np.ndarray
+    heating_N_per_K: Any  # G (dofs, elements), links first
+    moments: Any  # (m, dofs): slides of the contacts by rotations
+    slides: Any  # (k, dofs): slides of other friction joints
     of_nodes: Any
     displacement_m: np.ndarray
     shift_m: np.ndarray
@@ -78,6 +81,18 @@ class Clearances:
         return replace(self, by_state=np.hstack((self.by_state, moved)), limit_N=np.append(self.limit_N, most_N),
                        force_by_state=np.hstack((self.force_by_state, force)))
 
+    def heated(self, of_elements: np.ndarray, lowest_K: np.ndarray, highest_K: np.ndarray) -> Clearances:
+        """Return the truss with temperatures T in intervals, each as a further force about the middle of its interval.
+
+        :param of_elements: ΔT of elements by T (elements, variables)
+        """
+        moved, force = self.respond(self.heating_N_per_K @ of_elements)
+        middle = 0.5 * (lowest_K + highest_K)
+        return replace(self, by_state=np.hstack((self.by_state, moved)),
+                       limit_N=np.append(self.limit_N, 0.5 * (highest_K - lowest_K)),
+                       force_N=self.force_N + (force @ middle).reshape(-1, 2),
+                       force_by_state=np.hstack((self.force_by_state, force)))
+
     def depth_m(self, normal_N: np.ndarray) -> np.ndarray:
         """Return the depths at normal forces, joint by joint."""
         return np.asarray((np.maximum(normal_N, 0.0) / self.hertz_N_per_m15) ** (2 / 3))
@@ -103,7 +118,7 @@ def clearances(case: TrussCase) -> Clearances:
         raise EngineFailed(failure, case=truss.name, place=truss.name) from None
     revolutes = [index for index, joint in enumerate(named) if joint.section == "revolute"]
     others = [index for index, joint in enumerate(named) if joint.section not in ("revolute", "rigid")]
-    pins, shift = _pins(truss, found)
+    pins, shift = pins_of(truss, found)
     open_ = np.linalg.norm(shift, axis=1) < truss.revolutes.radial_clearance_m * (1 - NEAR)
     for index in np.flatnonzero(open_)[:1]:
         raise _open_contact(truss, int(index))
@@ -126,7 +141,8 @@ def clearances(case: TrussCase) -> Clearances:
     (kind,) = (joint for joint in JOINTS if joint.section == "revolute")
     hertz = kind.engine_arrays(truss, parts)["hertz_stiffness_N_per_m15"]
     return Clearances(
-        truss, joints, answer[:size], -solve.scale * answer[size + solve.rows - 2 * count:], found["of_nodes"].tocsr(),
+        truss, joints, answer[:size], -solve.scale * answer[size + solve.rows - 2 * count:],
+        found["heating_N_per_K"].tocsc(), moments, slides, found["of_nodes"].tocsr(),
         found["displacement_m"], shift, force, np.asarray(parts.radial_clearance_m), np.asarray(hertz),
         np.arctan(parts.friction_coefficient), found["friction_limit_N"][others], solve)
 
@@ -142,7 +158,7 @@ def _refuse_others(truss: ResolvedTruss, named: Sequence[Joint]) -> None:
                              part=f"slider '{sliders.names[index]}'")
 
 
-def _pins(truss: ResolvedTruss, found: Any) -> tuple[Any, np.ndarray]:
+def pins_of(truss: ResolvedTruss, found: Any) -> tuple[Any, np.ndarray]:
     """Return rows (2 m, dofs) of the displacements of journals against bearings, and d at the equilibrium."""
     parts, of_nodes = truss.revolutes, found["of_nodes"].tocsr()
     place = truss.nodes.position_m + found["displacement_m"]

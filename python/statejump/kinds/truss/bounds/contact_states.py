@@ -44,7 +44,7 @@ def rest_state(of: Clearances, share: np.ndarray, other_N: np.ndarray, start: Re
     normal = normal if start is None else start.normal_N
     scale = float(np.abs(of.force_N).max())
     for _ in range(NEWTON):
-        residual, slope = _balance(of, angle, normal, share, other_N)
+        residual, slope = balance(of, angle, normal, share, other_N)
         if np.abs(residual).max() <= CONVERGED * scale:
             return RestState(angle, normal, state_of(of, angle, normal, share, other_N))
         step = np.linalg.solve(slope, -residual)
@@ -59,8 +59,8 @@ def rest_state(of: Clearances, share: np.ndarray, other_N: np.ndarray, start: Re
     return None
 
 
-def _balance(of: Clearances, angle: np.ndarray, normal: np.ndarray, share: np.ndarray, other_N: np.ndarray
-             ) -> tuple[np.ndarray, np.ndarray]:
+def balance(of: Clearances, angle: np.ndarray, normal: np.ndarray, share: np.ndarray, other_N: np.ndarray
+            ) -> tuple[np.ndarray, np.ndarray]:
     """Return q(x) + λ n − f t (2 m,) and its derivatives by angles and normal forces."""
     count = of.count
     tan = np.tan(share * of.friction_angle_rad)
@@ -89,7 +89,7 @@ def farthest_state(of: Clearances, row: np.ndarray) -> RestState | None:
     if free is None:
         return None
     best = free
-    _, slope = _balance(of, free.angle_rad, free.normal_N, np.zeros(count), np.zeros(len(of.limit_N)))
+    _, slope = balance(of, free.angle_rad, free.normal_N, np.zeros(count), np.zeros(len(of.limit_N)))
     share = np.sign(_gradient(of, free, row, slope))
     share[share == 0] = 1.0
     by_angles = np.linalg.solve(slope.T, _shift_rows(of, free, row))

@@ -12,15 +12,18 @@ from scipy.sparse import vstack
 
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.bounds.clearance import Clearances, clearances
+from statejump.kinds.truss.bounds.clearance_history import attained_clearance
+from statejump.kinds.truss.bounds.clearance_verdict import verdict_of_clearance
 from statejump.kinds.truss.bounds.contact_states import farthest_state
 from statejump.kinds.truss.bounds.coupled import Coupled, coupled
 from statejump.kinds.truss.bounds.extremes import farthest
+from statejump.kinds.truss.bounds.history import Attained
 from statejump.kinds.truss.bounds.margin import Arms, Bars, bars_of, defects, relative
 from statejump.kinds.truss.bounds.outputs import Output, chosen
-from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict, ways
+from statejump.kinds.truss.bounds.ranges import Temperatures, ways
 from statejump.kinds.truss.bounds.result import Bound, Bounds
-from statejump.kinds.truss.bounds.sectors import Sectors, highest, propagated
-from statejump.kinds.truss.bounds.simulated import simulated
+from statejump.kinds.truss.bounds.sectors import Sectors, forces, highest, propagated
+from statejump.kinds.truss.bounds.simulated import repeated, simulated
 from statejump.kinds.truss.bounds.states import kept_cables
 from statejump.kinds.truss.case import TrussCase
 
@@ -28,8 +31,6 @@ MOST_ROWS = 24  # of an output whose rows are bounded one by one
 ROUNDS = 20  # of the margin
 GROWTH = 1.05  # of forces that do not yet contain themselves
 NOT_IN_MARGIN = ("beam", "body")
-UNCERTAIN = ("not certified: contact forces and friction are coupled, so a settled state does not prove that every "
-             "history settles")
 
 
 def with_clearance(case: TrussCase) -> bool:
@@ -139,7 +140,7 @@ def _arms(of: Clearances) -> Arms:
 
 
 def bounds_of_clearance(case: TrussCase, names: Sequence[str], box: tuple[float, float] | None,
-                        simulate: bool | None) -> Bounds:
+                        attain: bool, simulate: bool | None) -> Bounds:
     """Return bounds of the state jump of a truss with clearance revolutes."""
     found = contacts(clearances(case))
     of, wide, at = found.linear.of, found.wide.of, found.wide.at
@@ -149,12 +150,29 @@ def bounds_of_clearance(case: TrussCase, names: Sequence[str], box: tuple[float,
     places = of.of_nodes[:3 * len(of.truss.nodes.names)]
     outputs = chosen(of, names, lambda: _half(wide, at, places @ wide.by_state).reshape(-1, 3))
     path = simulated(case, simulate)
-    made = [_bound(found, output, path) for output in outputs]
-    text = f"every member between {box[0]:g} and {box[1]:g} K by itself" if box else "programs of the case"
-    nothing = np.zeros(0)
+    temperatures = Temperatures.of_box(of, box) if box else Temperatures.of_programs(of)
+    verdict = verdict_of_clearance(case, temperatures, _least_N(found.linear.of, temperatures),
+                                   repeated(case) if len(path) > 1 else None)
+    made, histories = [], {}
+    for output in outputs:
+        bound, history = _bound(found, case, output, path, attain)
+        made.append(bound)
+        if history is not None:
+            histories[output.name] = history
+        elif attain:
+            facts.append(f"no history of single members that leads near the bound of {output.name} was found")
     return Bounds(of.truss, "C", found.quality, found.why, facts, made, [str(joint) for joint in of.joints],
-                  np.concatenate((at.friction_N, of.limit_N)), Verdict("unknown", UNCERTAIN),
-                  Temperatures(text, nothing, nothing, nothing), {}, contacts=found)
+                  np.concatenate((at.friction_N, of.limit_N)), verdict, temperatures, histories, contacts=found)
+
+
+def _least_N(of: Clearances, temperatures: Temperatures) -> np.ndarray | None:
+    """Return the least contact forces over all states within a temperature range; None: contacts may open."""
+    hot = of.heated(temperatures.of_elements, temperatures.lowest_K, temperatures.highest_K)
+    try:
+        least = forces(hot, propagated(hot)).least_N * np.cos(of.friction_angle_rad)
+    except StatejumpError:
+        return None
+    return least if np.all(least > 0) else None
 
 
 def _half(of: Clearances, at: Sectors, rows: np.ndarray) -> np.ndarray:
@@ -163,7 +181,8 @@ def _half(of: Clearances, at: Sectors, rows: np.ndarray) -> np.ndarray:
     return np.maximum(highest(of, at, rows) - rows @ start, highest(of, at, -rows) + rows @ start)
 
 
-def _bound(found: Contacts, output: Output, path_m: np.ndarray) -> Bound:
+def _bound(found: Contacts, case: TrussCase, output: Output, path_m: np.ndarray, attain: bool
+           ) -> tuple[Bound, Attained | None]:
     of, at = found.linear.of, found.linear.at
     rows = output.rows(of)
     linear = rows @ of.by_state
@@ -174,11 +193,16 @@ def _bound(found: Contacts, output: Output, path_m: np.ndarray) -> Bound:
     reached = (nan if states[0] is None or states[1] is None
                else float(np.linalg.norm(linear @ (states[0].state - states[1].state))))
     parts = _parts(of, at, worst @ linear)
+    history = None
+    if attain and states[0] is not None and states[1] is not None:
+        history = attained_clearance(case, of, output, [states[0], states[1]], parts, spread)
     margin = total - spread if found.quality == "linear" else nan
     return Bound(
-        output=output, spread=spread, reached=reached, margin=margin, jump=jump, range_spread=nan, range_jump=nan,
-        simulated=nan if len(path_m) < 2 else output.change(path_m[0], path_m[-1]), attained=nan,
-        fraction=parts / (parts.sum() or 1.0), peak_thermal=(nan, nan))
+        output=output, spread=spread, reached=reached, margin=margin, jump=jump,
+        range_spread=spread, range_jump=jump,
+        simulated=nan if len(path_m) < 2 else output.change(path_m[0], path_m[-1]),
+        attained=nan if history is None else history.spread, fraction=parts / (parts.sum() or 1.0),
+        peak_thermal=(nan, nan)), history
 
 
 def _extent(programs: Coupled, rows: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, float, float]:

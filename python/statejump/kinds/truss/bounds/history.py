@@ -16,7 +16,7 @@ from statejump.core.errors import StatejumpError
 from statejump.core.start import FRICTIONLESS
 from statejump.kinds.loading import load_case
 from statejump.kinds.truss.bounds.outputs import Output
-from statejump.kinds.truss.bounds.ranges import Temperatures
+from statejump.kinds.truss.bounds.ranges import Heated, Temperatures
 from statejump.kinds.truss.bounds.sliding import Sliding
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.solve import solve
@@ -61,7 +61,7 @@ def attained(case: TrussCase, of: Sliding, output: Output, direction: np.ndarray
         if legs is None or np.abs(legs).max() > MOST_K:
             continue
         try:
-            found.append(_simulated(_case_of(case, of, members, legs, output), output, float(np.abs(legs).max())))
+            found.append(simulated_history(as_case(case, of, members, legs, output), output, float(np.abs(legs).max())))
         except StatejumpError:  # temperatures beyond the range of a case, or a truss that snaps on the way
             continue
         if found[-1].spread >= (1 - NEARLY) * spread:
@@ -69,7 +69,8 @@ def attained(case: TrussCase, of: Sliding, output: Output, direction: np.ndarray
     return max(found, key=lambda one: one.spread) if found else None
 
 
-def _simulated(case: TrussCase, output: Output, largest_K: float) -> Attained:
+def simulated_history(case: TrussCase, output: Output, largest_K: float) -> Attained:
+    """Return a history with the difference of its states at the middle and at the end."""
     path = solve(case)
     at = [int(np.abs(path.states["time_s"] - time).argmin()) for time in (case.period_s / 2, case.period_s)]
     return Attained(case, output.change(*path.states["displacement_m"][at]), largest_K)
@@ -148,7 +149,7 @@ def large_enough(least: float, of: Sliding, members: Temperatures, heating: np.n
     return np.array([rest, turn, rest, -turn, rest])
 
 
-def _case_of(case: TrussCase, of: Sliding, members: Temperatures, legs: np.ndarray, output: Output) -> TrussCase:
+def as_case(case: TrussCase, of: Heated, members: Temperatures, legs: np.ndarray, output: Output) -> TrussCase:
     """Return the case with the temperature of each member as a table."""
     data: dict[str, Any] = deepcopy(dict(case.origin.document))
     which = np.flatnonzero(members.of_elements.any(axis=1))

@@ -2,7 +2,7 @@
 """Outputs of a truss that are bounded: linear functions of the displacements of nodes, scalars or vectors."""
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -85,13 +85,15 @@ def chosen(of: Linear, names: Sequence[str], spread_m: Callable[[], np.ndarray])
     """
     if not names:
         return _largest(of.truss.nodes.names, spread_m())
-    return [output for name in names for output in _named(of, name)]
+    numbers = {name: number for number, name in enumerate(list(of.truss.nodes.names))}
+    return [output for name in names for output in _named(of, name, numbers)]
 
 
-def _named(of: Linear, name: str) -> list[Output]:
+def _named(of: Linear, name: str, numbers: Mapping[str, int]) -> list[Output]:
+    """Return the outputs of a name. ``numbers``: of all nodes by name."""
     what, _, rest = name.partition(":")
     if what == "node":
-        return _of_node(of, name, rest)
+        return _of_node(of, name, rest, numbers)
     if what not in ("rms", "tilt", "zernike", "point"):
         raise NotAllowed("output", name, code="bounds_bad_output")
     design, nodes = _surface(of)
@@ -99,14 +101,13 @@ def _named(of: Linear, name: str) -> list[Output]:
     return [Output(name, unit, nodes, _of_surface(design, name, what, rest))]
 
 
-def _of_node(of: Linear, name: str, rest: str) -> list[Output]:
-    nodes = of.truss.nodes.names
+def _of_node(of: Linear, name: str, rest: str, numbers: Mapping[str, int]) -> list[Output]:
     node, axes, joined = rest, AXES[:of.truss.dimension], False
     head, _, tail = rest.rpartition(".")
-    if rest not in nodes and head and tail and set(tail) <= set(AXES) and len(set(tail)) == len(tail):
+    if rest not in numbers and head and tail and set(tail) <= set(AXES) and len(set(tail)) == len(tail):
         node, axes, joined = head, tail, len(tail) > 1
-    known_name("output", name, node, dict.fromkeys(nodes), "node", case=of.truss.name)
-    index = nodes.index(node)
+    known_name("output", name, node, numbers, "node", case=of.truss.name)
+    index = numbers[node]
     free = [axis for axis in axes if abs(of.of_nodes[3 * index + AXES.index(axis)]).sum() > 0]
     if not free:
         raise NotAllowed("output", name, code="bounds_bad_output")

@@ -6,6 +6,7 @@ while joint i slips at λ_i = +f_i. Ranges of p that contain the start and repro
 """
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from math import inf, nan
 from typing import Any, Protocol
@@ -116,12 +117,13 @@ def parsed_range(given: str | tuple[float, float]) -> tuple[float, float]:
 class Verdict:
     """Whether joints slip within a temperature range.
 
-    :param kind: "never_slips", "settles", "repeats", "may_ratchet" or "unknown"
+    :param kind: "never_slips", "settles", "repeats", "bounded" (never ratchets), "may_ratchet" or "unknown"
     :param factor: η, the factor on the range up to which joints settle
     :param limiting: joint that limits η
     :param slips: of every joint, whether it may slip; None: unknown
     :param mechanism: motion that may ratchet
     :param drift_m: its drift per cycle of the case, simulated; NaN: not simulated
+    :param certified: whether it is proved for the linear truss; an estimate otherwise
     """
 
     kind: str
@@ -131,10 +133,12 @@ class Verdict:
     slips: np.ndarray | None = None
     mechanism: str = ""
     drift_m: float = nan
+    certified: bool = True
 
     def record(self) -> dict[str, Any]:
         """Return the verdict as plain values."""
-        return {"kind": self.kind, "text": self.text, "limiting_joint": self.limiting,
+        return {"kind": self.kind, "certified": self.certified and self.kind != "unknown", "text": self.text,
+                "limiting_joint": self.limiting,
                 "factor": self.factor if np.isfinite(self.factor) else None, "mechanism": self.mechanism,
                 "drift_m": None if np.isnan(self.drift_m) else self.drift_m,
                 "slips": None if self.slips is None else [bool(one) for one in self.slips]}
@@ -240,6 +244,42 @@ def _verdict(of: Sliding, rubbing: np.ndarray, problem: _LastSlip, start: np.nda
     return Verdict("repeats", f"repeats: joints rub in every cycle, the shape repeats; {said}", factor, limiting, slips)
 
 
+Slipped = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+def ranges_that_hold(slipped: Slipped, begins: np.ndarray, near: np.ndarray, start_holds: bool
+                     ) -> tuple[np.ndarray, np.ndarray]:
+    """Return ranges of the slips p that hold at all times, however long the history.
+
+    :param slipped: bounds of p that joints reach while they slip, if all p are within given ranges
+    :param begins: p at the start; ``near``: smallest half ranges
+    :param start_holds: whether no joint slips
+    """
+    low, high = begins - near, begins + near
+    if start_holds:
+        return low, high
+    for _ in range(ROUNDS):
+        lower, higher = slipped(low, high)
+        if np.all(lower >= low) and np.all(higher <= high):
+            return _narrowed(slipped, near, low, high)
+        low = np.where(lower < low, begins + WIDER * (lower - begins) - near, low)
+        high = np.where(higher > high, begins + WIDER * (higher - begins) + near, high)
+    return _narrowed(slipped, near, np.full(len(near), -inf), np.full(len(near), inf))
+
+
+def _narrowed(slipped: Slipped, near: np.ndarray, low: np.ndarray, high: np.ndarray
+              ) -> tuple[np.ndarray, np.ndarray]:
+    """Return narrower ranges, given ranges that hold at all times."""
+    for _ in range(MOST_NARROWED):
+        lower, higher = slipped(low, high)
+        narrower = np.maximum(low, lower - near), np.minimum(high, higher + near)
+        before = high - low
+        low, high = narrower
+        if np.all(before - (high - low) <= NARROWED * (high - low)):
+            break
+    return low, high
+
+
 @dataclass(frozen=True)
 class _LastSlip:
     """The last-slip programs. Variables: λ/f, then T over its largest magnitude."""
@@ -271,29 +311,7 @@ class _LastSlip:
 
     def ranges(self, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return ranges of the slips p that hold at all times, however long the history."""
-        near = self._near()
-        low, high = self.begins - near, self.begins + near
-        if self.holds(start):
-            return low, high
-        for _ in range(ROUNDS):
-            lower, higher = self._slipped(low, high)
-            if np.all(lower >= low) and np.all(higher <= high):
-                return self._narrowed(low, high)
-            low = np.where(lower < low, self.begins + WIDER * (lower - self.begins) - near, low)
-            high = np.where(higher > high, self.begins + WIDER * (higher - self.begins) + near, high)
-        return self._narrowed(np.full(len(near), -inf), np.full(len(near), inf))
-
-    def _narrowed(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return narrower ranges, given ranges that hold at all times."""
-        near = self._near()
-        for _ in range(MOST_NARROWED):
-            lower, higher = self._slipped(low, high)
-            narrower = np.maximum(low, lower - near), np.minimum(high, higher + near)
-            before = high - low
-            low, high = narrower
-            if np.all(before - (high - low) <= NARROWED * (high - low)):
-                break
-        return low, high
+        return ranges_that_hold(self._slipped, self.begins, self._near(), self.holds(start))
 
     def _slipped(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return bounds of p that joints reach while they slip, if all p are within ranges."""

@@ -41,7 +41,8 @@ class Bound:
     :param fraction: contribution of each joint to the spread
     :param peak_thermal: largest excursion from the equilibrium without friction due to temperature alone
     :param corners: corners (k, 2) of the rest states of an output with two components, from their centre
-    :param start: the start of the case from this centre
+    :param path: the path of the case from this centre
+    :param by_stiffness: derivatives of the spread by the logarithm of the stiffness of each element; None: not computed
     """
 
     output: Output
@@ -57,6 +58,7 @@ class Bound:
     peak_thermal: tuple[float, float]
     corners: np.ndarray | None = None
     path: np.ndarray = field(default_factory=lambda: np.zeros((0, 1)))
+    by_stiffness: np.ndarray | None = None
 
     def __getattr__(self, name: str) -> Any:
         what, _, unit = name.rpartition("_")
@@ -104,6 +106,7 @@ class Bounds:
     attained: Mapping[str, Attained]
     over_range: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
     contacts: Any = None  # Contacts of clearance revolutes
+    elements: Sequence[str] = ()  # links and springs of Bound.by_stiffness
 
     @property
     def guarantee(self) -> str:
@@ -149,8 +152,13 @@ class Bounds:
             "facts": list(self.facts), "bounds": [bound.record() for bound in self.bounds],
             "range": self.temperatures.text, "verdict": self.verdict.record(),
             "joints": [{"joint": joint, "friction_limit_N": plain(limit),
-                        "fraction": {bound.output.name: float(bound.fraction[index]) for bound in self.bounds}}
+                        "fraction": {bound.output.name: float(bound.fraction[index]) for bound in self.bounds},
+                        "spread_by_limit": {bound.output.name: plain(bound.spread * bound.fraction[index] / limit)
+                                            if limit > 0 else None for bound in self.bounds}}
                        for index, (joint, limit) in enumerate(zip(self.joints, self.limit_N))],
+            "elements": [{"element": element, "spread_by_log_stiffness": {
+                bound.output.name: float(bound.by_stiffness[index]) for bound in self.bounds
+                if bound.by_stiffness is not None}} for index, element in enumerate(self.elements)],
         }
 
     def write(self, folder: Path) -> list[Path]:

@@ -8,6 +8,7 @@ connected.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from heapq import heappop, heappush
 from itertools import count as numbers
 
@@ -24,6 +25,7 @@ SLACK = 1e-3  # of an assumed range that must stay free
 NODES = 300  # of branch and bound
 GAP = 1e-6  # of the bound at which branch and bound ends
 MOST_PARTS = 40  # of branch and bound
+NONE = -1e250  # value of a state that was not sought
 FLIPS = 3  # sweeps over the joints in the search for states
 
 
@@ -50,6 +52,12 @@ def clipped(part: Part, low: float, high: float, least: float, most: float) -> n
 
 def hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return rows (k, 2) and right-hand sides of the convex hull, row · (z, h) <= right."""
+    return _hull(tuple(map(tuple, points.tolist())))
+
+
+@lru_cache(1024)
+def _hull(corners: tuple[tuple[float, ...], ...]) -> tuple[np.ndarray, np.ndarray]:
+    points = np.array(corners)
     size = np.ptp(points, axis=0)
     scale = np.where(size > 0, size, 1.0)
     unit = (points - points[0]) / scale
@@ -87,10 +95,20 @@ class Box:
                 for index, part in enumerate(of.parts)]
 
 
+@dataclass(frozen=True)
+class Rows:
+    """Further rows of the programs: least <= by_friction λ + by_force h <= most."""
+
+    by_friction: np.ndarray
+    by_force: np.ndarray
+    least: np.ndarray
+    most: np.ndarray
+
+
 class Programs:
     """The programs on polylines, given by their corners."""
 
-    def __init__(self, of: Branches, lines: list[np.ndarray]) -> None:
+    def __init__(self, of: Branches, lines: list[np.ndarray], more: Rows | None = None) -> None:
         self.of, self.points = of, lines
         self.empty = any(len(points) == 0 for points in self.points)
         if self.empty:
@@ -110,7 +128,14 @@ class Programs:
                 rows.append(along_z * self.by_variable[index] + along_h * force)
                 right.append(most_ - along_z * self.centre[index] - along_h * self.middle[index])
         bounds = np.concatenate((np.ones(joints), (self.half > 0).astype(float)))
-        self.polytope = Polytope(np.array(rows), np.full(len(rows), -np.inf), np.array(right), -bounds, bounds)
+        found = Polytope(np.array(rows), np.full(len(rows), -np.inf), np.array(right), -bounds, bounds)
+        self.polytope = found if more is None else self._with(found, more)
+
+    def _with(self, found: Polytope, more: Rows) -> Polytope:
+        shift = more.by_force @ self.middle
+        made = np.hstack((more.by_friction * self.of.limit_N, more.by_force * self.half))
+        return Polytope(np.vstack((found.rows, made)), np.append(found.least, more.least - shift),
+                        np.append(found.most, more.most - shift), found.lowest, found.highest)
 
     def solved(self, friction: np.ndarray, force: np.ndarray) -> Solved:
         """Return the bound of friction · λ + force · h."""
@@ -191,19 +216,23 @@ class Farthest:
     state_N: np.ndarray
 
 
-def farthest_branch(of: Branches, box: Box, friction: np.ndarray, force: np.ndarray, nodes: int = NODES) -> Farthest:
-    """Return the largest value of friction · λ + force · h over all rest states, by branch and bound."""
-    best = _search(of, friction, force)
+def farthest_branch(of: Branches, box: Box, friction: np.ndarray, force: np.ndarray, nodes: int = NODES,
+                    more: Rows | None = None) -> Farthest:
+    """Return the largest value of friction · λ + force · h over all rest states, by branch and bound.
+
+    :param more: further rows; states that obey them are not sought
+    """
+    best = _search(of, friction, force) if more is None else (NONE, np.zeros(len(of.limit_N)))
     order = numbers()
-    root = Programs(of, box.lines(of))
+    root = Programs(of, box.lines(of), more)
     found = root.solved(friction, force)
     queue: list[tuple[float, int, Programs, Solved]] = [(-found.bound, next(order), root, found)]
     done = -np.inf
     for _ in range(nodes if len(of.parts) <= MOST_PARTS else 1):
-        if not queue or -queue[0][0] <= best[0] + GAP * abs(best[0]):
+        if not queue or np.isneginf(-queue[0][0]) or -queue[0][0] <= best[0] + GAP * abs(best[0]):
             break
         bound, _, programs, found = heappop(queue)
-        if found.x is not None:
+        if found.x is not None and more is None:
             best = max(best, _value(of, friction, force, found.x[:len(of.limit_N)] * of.limit_N), key=_first)
         cut = _cut(of, programs, found.x)
         if cut is None:
@@ -211,12 +240,12 @@ def farthest_branch(of: Branches, box: Box, friction: np.ndarray, force: np.ndar
             continue
         part, corner = cut
         for points in (programs.points[part][:corner + 1], programs.points[part][corner:]):
-            made = Programs(of, [*programs.points[:part], points, *programs.points[part + 1:]])
+            made = Programs(of, [*programs.points[:part], points, *programs.points[part + 1:]], more)
             value = made.solved(friction, force)
             if value.bound > best[0] + GAP * abs(best[0]):
                 heappush(queue, (max(bound, -value.bound), next(order), made, value))
     left = -queue[0][0] if queue else -np.inf
-    return Farthest(max(left, done, best[0] * (1 + GAP * np.sign(best[0]))), *best)
+    return Farthest(max(left, done, best[0] + GAP * abs(best[0])), *best)
 
 
 def _first(pair: tuple[float, np.ndarray]) -> float:

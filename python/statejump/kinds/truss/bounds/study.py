@@ -9,17 +9,20 @@ from math import nan
 import numpy as np
 
 from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.bounds.branches import parts_of
 from statejump.kinds.truss.bounds.contacts import bounds_of_clearance, with_clearance
 from statejump.kinds.truss.bounds.extremes import farthest, zonogon
+from statejump.kinds.truss.bounds.gradients import by_stiffness, stiffness_names
 from statejump.kinds.truss.bounds.history import MOST_K, attained
+from statejump.kinds.truss.bounds.hot import Hot, changes_branch, within_stops
 from statejump.kinds.truss.bounds.margin import Margin, margin
 from statejump.kinds.truss.bounds.outputs import Output, chosen, spreads_m
-from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict, WithinRange, parsed_range, within
+from statejump.kinds.truss.bounds.ranges import Temperatures, WithinRange, parsed_range, within
 from statejump.kinds.truss.bounds.result import Bound, Bounds
 from statejump.kinds.truss.bounds.sliding import Sliding, sliding
 from statejump.kinds.truss.bounds.simulated import MOST_SIMULATED, simulated
 from statejump.kinds.truss.bounds.states import changing, kept_states
-from statejump.kinds.truss.bounds.switching import bound_of, switching
+from statejump.kinds.truss.bounds.switching import bound_of, linear_branches, switching
 from statejump.kinds.truss.bounds.walking import bounds_of_walking, walking
 from statejump.kinds.truss.case import TrussCase
 
@@ -43,7 +46,7 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
     box = None if range_K is None else parsed_range(range_K)
     output = [output] if isinstance(output, str) else output
     if with_clearance(case):
-        return bounds_of_clearance(case, output, box, simulate)
+        return bounds_of_clearance(case, output, box, attain, simulate)
     try:
         of = sliding(case)
     except StatejumpError:  # also EngineFailed
@@ -61,8 +64,11 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
     facts = kept_states(of, lambda rows: np.abs(rows @ of.by_friction) @ of.limit_N + exact.of(rows))
     temperatures = Temperatures.of_box(of, box) if box else Temperatures.of_programs(of)
     found = within(of, temperatures)
-    path = simulated(case, simulate)
-    made, histories = [], {}
+    hot, by_part = _hot(of, temperatures)
+    if hot is not None:
+        facts.append("stops, plays or cables may change their state within the range of the temperatures")
+    path = simulated(case, simulate, of.displacement_m)
+    made, histories, elements = [], {}, stiffness_names(of)
     for one in outputs:
         rows = one.rows(of)
         gains, thermal = of.gains_of(rows)
@@ -75,21 +81,33 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
             facts.append(f"no temperatures of single members up to {MOST_K:g} K lead to the bound of {one.name}")
         parts = np.abs(direction @ gains) * of.limit_N
         start = one.vector(path[0]) - one.vector(of.displacement_m)
-        in_range = found.extent(gains, 2 * far.bound)
+        jump = min(far.bound + float(np.linalg.norm(start)), 2 * far.bound)
+        in_range = (found.extent(gains, 2 * far.bound) if hot is None
+                    else hot.extent(gains, rows @ by_part, start, (2 * far.bound, jump)))
         made.append(Bound(
             output=one, spread=2 * far.bound, reached=2 * far.reached, margin=_margin(exact, rows),
-            jump=min(far.bound + float(np.linalg.norm(start)), 2 * far.bound),
-            range_spread=in_range[0], range_jump=in_range[1],
+            jump=jump, range_spread=in_range[0], range_jump=in_range[1],
             simulated=nan if len(path) < 2 else one.change(path[0], path[-1]),
             attained=nan if reached is None else reached.spread, fraction=parts / (parts.sum() or 1.0),
             peak_thermal=temperatures.peak(thermal),
             corners=zonogon(gains * of.limit_N) if len(rows) == 2 and len(of.joints) <= MOST_SIMULATED else None,
-            path=one.vector(path) - one.vector(of.displacement_m)))
+            path=one.vector(path) - one.vector(of.displacement_m),
+            by_stiffness=by_stiffness(of, direction @ rows, direction @ gains) if elements else None))
     shows = box is not None and np.isfinite(found.verdict.factor)
     return Bounds(
         of.truss, "A", exact.quality, exact.why, facts, made, [str(joint) for joint in of.joints], of.limit_N,
-        found.verdict, temperatures, histories,
-        partial(_over_range, of, temperatures, found, made[0]) if shows else None)
+        found.verdict if hot is None else hot.verdict, temperatures, histories,
+        partial(_over_range, of, temperatures, found, made[0]) if shows else None, elements=elements)
+
+
+def _hot(of: Sliding, temperatures: Temperatures) -> tuple[Hot | None, np.ndarray]:
+    """Return the rest states within a temperature range, and K⁻¹Rᵀ of parts; None: all parts keep their state."""
+    parts = parts_of(of)
+    if not parts:
+        return None, np.zeros((0, 0))
+    linear, by_part = linear_branches(of, parts)
+    changes = changes_branch(of, linear, temperatures)
+    return within_stops(of, linear, by_part, temperatures) if changes else None, by_part
 
 
 def _switching(case: TrussCase, of: Sliding, outputs: Sequence[Output], box: tuple[float, float] | None, attain: bool,
@@ -97,16 +115,17 @@ def _switching(case: TrussCase, of: Sliding, outputs: Sequence[Output], box: tup
     """Return the bounds of a truss whose stops, plays or cables change their state."""
     at = switching(of)
     path = simulated(case, simulate)
+    temperatures = Temperatures.of_box(of, box) if box else Temperatures.of_programs(of)
+    hot = within_stops(of, at.linear, at.by_part, temperatures)
     made, histories = [], {}
     for output in outputs:
-        bound, history = bound_of(at, case, output, path, attain)
+        bound, history = bound_of(at, case, output, path, attain, hot)
         made.append(bound)
         if history is not None:
             histories[output.name] = history
     facts = [f"{len(at.linear.parts)} stops, plays and cables are bounded branch by branch"]
-    verdict = Verdict("unknown", "stops, plays or cables change their state, for which no verdict is derived")
     return Bounds(of.truss, "B", at.quality, at.why, facts, made, [str(joint) for joint in of.joints], of.limit_N,
-                  verdict, Temperatures.of_box(of, box) if box else Temperatures.of_programs(of), histories)
+                  hot.verdict, temperatures, histories)
 
 
 def _margin(exact: Margin, rows: np.ndarray) -> float:
@@ -121,11 +140,15 @@ def _over_range(of: Sliding, temperatures: Temperatures, found: WithinRange, fir
 
     The factors begin below the limit up to which joints settle, and end where the spread reaches the bound.
     """
-    gains, _ = of.gains_of(first.output.rows(of))
+    rows = first.output.rows(of)
+    gains, _ = of.gains_of(rows)
     factors, spreads = [], []
     for one in np.geomspace(0.25 * found.verdict.factor, MOST_FACTOR * found.verdict.factor, POINTS):
         factors.append(one)
-        spreads.append(within(of, temperatures.scaled(one)).extent(gains, first.spread)[0])
+        scaled = temperatures.scaled(one)
+        hot, by_part = _hot(of, scaled)
+        spreads.append(within(of, scaled).extent(gains, first.spread)[0] if hot is None else hot.extent(
+            gains, rows @ by_part, np.zeros(len(rows)), (first.spread, first.spread))[0])
         if not spreads[-1] < REACHED * first.spread:
             break
     return np.array(factors), np.array(spreads)

@@ -10,9 +10,10 @@ import numpy as np
 from scipy.sparse import vstack
 
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss.bounds.branches import Branches, parts_of
+from statejump.kinds.truss.bounds.branches import Branches, Part, parts_of
 from statejump.kinds.truss.bounds.extremes import farthest
 from statejump.kinds.truss.bounds.history import attained
+from statejump.kinds.truss.bounds.hot import Hot
 from statejump.kinds.truss.bounds.margin import Arms, Bars, arms_of, bars_of, defects, refuses_margin
 from statejump.kinds.truss.bounds.outputs import Output
 from statejump.kinds.truss.bounds.ranges import ways
@@ -46,17 +47,21 @@ class Switching:
     why: str
 
 
+def linear_branches(of: Sliding, parts: list[Part]) -> tuple[Branches, np.ndarray]:
+    """Return the equations of the linear truss with its parts, and K⁻¹Rᵀ (dofs, parts)."""
+    rows = np.array([part.row for part in parts])
+    by_part = of.solve(rows.T)
+    return Branches(parts, np.array([part.position_m for part in parts]), rows @ of.by_friction, rows @ by_part,
+                    of.limit_N), by_part
+
+
 def switching(of: Sliding) -> Switching:
     """Return the equations of a truss with stops, plays or cables.
 
     :raises StatejumpError: no ranges of their positions and forces are confirmed
     """
-    parts = parts_of(of)
-    rows = np.array([part.row for part in parts])
-    by_part = of.solve(rows.T)
-    linear = Branches(parts, np.array([part.position_m for part in parts]), rows @ of.by_friction, rows @ by_part,
-                      of.limit_N)
-    name = of.truss.name
+    linear, by_part = linear_branches(of, parts_of(of))
+    rows, name = np.array([part.row for part in linear.parts]), of.truss.name
     box = valid_box(linear, name)
     alone = Switching(of, linear, box, linear, box, of.by_friction, by_part, np.zeros((of.stiffness.shape[0], 0)),
                       "estimate", refuses_margin(of))
@@ -96,9 +101,12 @@ def _defects(of: Sliding, bars: Bars, arms: Arms, lines: Any, by_part: np.ndarra
     return defects(bars, arms, half, np.abs(compliance), np.abs(elastic), most_N)
 
 
-def bound_of(at: Switching, case: TrussCase, output: Output, path_m: np.ndarray, attain: bool
+def bound_of(at: Switching, case: TrussCase, output: Output, path_m: np.ndarray, attain: bool, hot: Hot
              ) -> tuple[Bound, Any]:
-    """Return the bounds of an output, and the simulated history that comes close."""
+    """Return the bounds of an output, and the simulated history that comes close.
+
+    :param hot: rest states within the temperature range
+    """
     of, rows = at.of, output.rows(at.of)
     gains, by_part, by_defect = rows @ at.by_friction, rows @ at.by_part, rows @ at.by_defect
     start = output.vector(path_m[0]) - output.vector(of.displacement_m)
@@ -125,9 +133,10 @@ def bound_of(at: Switching, case: TrussCase, output: Output, path_m: np.ndarray,
         margin = max(0.0, total - spread)
     history = attained(case, of, output, worst) if attain else None
     parts = np.abs(worst @ gains) * of.limit_N
+    in_range = hot.extent(gains, by_part, start, (spread, min(jump, spread)))
     return Bound(
         output=output, spread=spread, reached=float(widths[:, 1].max()), margin=margin, jump=min(jump, spread),
-        range_spread=nan, range_jump=nan,
+        range_spread=in_range[0], range_jump=in_range[1],
         simulated=nan if len(path_m) < 2 else output.change(path_m[0], path_m[-1]),
         attained=nan if history is None else history.spread, fraction=parts / (parts.sum() or 1.0),
         peak_thermal=(nan, nan)), history

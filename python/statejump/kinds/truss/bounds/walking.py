@@ -8,7 +8,6 @@ some ρ and η > 1, θ being the friction of joints that stick for ever.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, nan
@@ -19,21 +18,18 @@ from scipy.linalg import null_space
 
 from statejump import _engine
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import StatejumpError
-from statejump.kinds.loading import load_case
 from statejump.kinds.truss.bounds.outputs import Output, chosen
 from statejump.kinds.truss.bounds.programs import Polytope
 from statejump.kinds.truss.bounds.ranges import Temperatures, Verdict
 from statejump.kinds.truss.bounds.result import Bound, Bounds
-from statejump.kinds.truss.bounds.simulated import simulated
+from statejump.kinds.truss.bounds.simulated import repeated, simulated
 from statejump.kinds.truss.bounds.sliding import FREE, Joint, moved_nodes
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import engine_items, solve
+from statejump.kinds.truss.solve import engine_items
 
 MOST_DOFS = 2000
-CYCLES = 6  # of the simulation of a drift
 ZERO = 1e-9  # relative size of sums that count as rounding
 NEARLY = 1e-6  # of the factor
 
@@ -207,26 +203,12 @@ def verdict_of(of: Walking, case: TrussCase, temperatures: Temperatures, whole: 
         return Verdict("never_slips", f"never slips; {said}", found.factor, limiting, np.zeros(len(start), dtype=bool))
     if found.factor >= 1:
         return Verdict("settles", f"settles: in the end no joint slips; {said}", found.factor, limiting, slips, mode)
-    drift = _drift(case) if whole else nan
+    cycles = repeated(case) if whole else None
+    drift = nan if cycles is None else cycles.drift_m
     shown = "" if np.isnan(drift) else f", {1e6 * drift:.6g} µm per cycle of the case, simulated"
     cause = " begins with alternating slip, which may not drift" if found.alternates else ""
     text = f"may ratchet: {mode} drifts{cause}{shown}; {said}"
     return Verdict("may_ratchet", text, found.factor, limiting, slips, mode, drift)
-
-
-def _drift(case: TrussCase) -> float:
-    """Return the largest displacement [m] of a node over the last of CYCLES cycles."""
-    data = deepcopy(dict(case.origin.document))
-    data["thermal"] = {**data["thermal"], "cycles": CYCLES}
-    made = load_case(data)
-    assert isinstance(made, TrussCase)
-    try:
-        states = solve(made).states
-    except StatejumpError:
-        return nan
-    last = int(np.abs(states["time_s"] - (CYCLES - 1) * made.period_s).argmin())
-    moved = states["displacement_m"][-1] - states["displacement_m"][last]
-    return float(np.linalg.norm(moved, axis=1).max())
 
 
 def bounds_of_walking(of: Walking, case: TrussCase, names: Sequence[str], temperatures: Temperatures,
