@@ -1192,10 +1192,14 @@ CODES: dict[str, Code] = {
         remedy="give the .asm or .pch file of the same run",
     ),
     "matrix_load_columns": Code(cause="it has {columns} columns for {names} pattern names"),
+    "matrix_op2_words": Code(
+        what="no OUTPUT2 file with words of four bytes",
+        remedy="write the matrices with EXTSEOUT(DMIGPCH) or OUTPUT4",
+    ),
     "matrix_missing": Code(
         what="no stiffness",
         cause="the files have the matrices {known}",
-        remedy="name the stiffness",
+        remedy="name the stiffness, or write it in Nastran with EXTSEOUT(DMIGPCH) or EXTSEOUT(DMIGOP2)",
     ),
     "matrix_node_missing": Code(
         what="node {node} has no position",
