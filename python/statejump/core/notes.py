@@ -84,6 +84,7 @@ NOTES: dict[str, str] = {
     "body_without_modes": (
         "body {body!r}: motion does not use the {modes} modes of its file; frequencies with them: statejump modes"
     ),
+    "joint_turns_nodes": "no contributions of joints: the friction of {joint} is a moment on nodes that rotate",
     "several_reactions": (
         "{named}: constrain a displacement more than once {at}; the reactions are one solution of many, the "
         "displacements are unique"
