@@ -2,16 +2,21 @@
 """Answers and control of trusses with condensed bodies, beside those of the beams that the bodies condense."""
 from __future__ import annotations
 
+import tomllib
+from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 
+from failures import failing
 from test_truss_bodies import bracket_case, panel_case
 import statejump as sj
 from conftest import REPOSITORY
 from statejump.control.study import DesignChoices
 from statejump.kinds.truss.control.study import control
+from statejump.schema.toml import to_toml
 
 SLIDER = {"name": "S", "nodes": ["tip"], "axis": [1.0, 0.0, 0.0], "friction_coefficient": 0.1, "normal_force_N": 2000.0}
 
@@ -63,3 +68,40 @@ def test_control_finds_the_friction_of_half_the_jump() -> None:
     study = control(case, choices=DesignChoices(scale=[wanted]))
     values = {one["parameter"]: one["value"] for one in study.recommendation["candidates"]}
     assert values[f"scale {wanted}"] == pytest.approx(0.5, rel=1e-3)
+
+
+def members_case(folder: Path, columns: str, **more: Any) -> Any:
+    """Return a body of two patterns whose temperatures are columns of a table."""
+    made = panel_case(np.eye(3), False).origin.document
+    body = made["body"][0]
+    shapes = body["content"].free_shapes[0] * [[1.0], [0.5]]
+    content = attrs.evolve(body["content"], pattern_names=("uniform", "half"), free_shapes=shapes)
+    path = sj.load({**{key: value for key, value in made.items() if key != "reflector"},
+                    "body": [{**body, "content": content, "patterns": ["uniform", "half"]}]}).save(folder / "case.toml")
+    data = tomllib.loads(Path(path).read_text())
+    data["body"][0] |= more
+    data["thermal"] = {"shape": "table", "members_file": "members.csv"}
+    (folder / "members.csv").write_text(columns)
+    (folder / "case.toml").write_text(to_toml(data))
+    return sj.load(folder / "case.toml")
+
+
+def test_columns_of_members_scale_patterns(tmp_path: Path) -> None:
+    """A column of the half pattern has half of the effect of the same column of the whole pattern."""
+    whole, half = (
+        members_case(tmp_path, f"time_s,P/uniform_K,P/half_K\n0,0,0\n1,{first},{second}\n2,0,0\n").reduced()
+        for first, second in ((60, 0), (0, 120)))
+    moved = [one.history["displacement_m"].values for one in (whole, half)]
+    at = [int(np.argmin(np.abs(one.history["time_s"].values - 1.0))) for one in (whole, half)]
+    assert np.abs(moved[0][at[0]] - moved[0][0]).max() > 1e-4
+    assert moved[1][at[1]] == pytest.approx(moved[0][at[0]], rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize(("header", "more", "code"), [
+    ("P/uniform_K,P/cold_K", {}, "no_column_of_item"), ("P/uniform_K,P/half_K,Q_K", {}, "column_of_several"),
+    ("P/uniform_K,P/half_K", {"temperature_fractions": [1.0, 2.0]}, "temperature_from_members_file"),
+])
+def test_wrong_columns_of_members_are_refused(tmp_path: Path, header: str, more: dict[str, Any], code: str) -> None:
+    zeros = ",".join(["0"] * (header.count(",") + 1))
+    with failing(code):
+        members_case(tmp_path, f"time_s,{header}\n0,{zeros}\n1,{zeros}\n", **more)
