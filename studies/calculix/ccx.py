@@ -15,7 +15,7 @@ from statejump.core.errors import FailedRun, StatejumpError
 from statejump.core.scratch import scratch
 
 PROGRAM = "ccx"
-LONGEST_S = 120.0
+LONGEST_S = 1800.0
 _HEAD = re.compile(r"(displacements|stresses) \([^)]*\) for set (\S+) and time +\S+")
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the CalculiX deck of a structure with beams, hinges, rigid bodies, bars and sliders, for small displacements.
+"""Writes the CalculiX deck of a structure with beams, hinges, rigid bodies, bars, springs and sliders, for small
+displacements.
 
 A beam is a row of bricks C3D20R over a rectangular section. CalculiX makes the same bricks from elements B32R. The deck
 has the bricks themselves for two reasons. Rotations of nodes are then displacements of nodes without elements, which
@@ -170,6 +171,20 @@ def hinges(frame: Frame, rigid: float) -> None:
         if preload:
             frame.loads += [f"{frame.count + node + 1}, {along + 1}, {number(-sign * preload * float(axis[along]))}"
                             for node, sign in ends for along in range(3) if frame.turns[node, along] and axis[along]]
+
+
+def springs(frame: Frame) -> None:
+    """Add the springs: bricks whose elongation is that of the spring. A preload acts on the nodes."""
+    items, at = frame.truss.elements["spring"], frame.truss.nodes.position_m
+    for (one, two), stiffness, preload in zip(items.nodes.tolist(), items.stiffness_N_per_m, items.preload_N):
+        length = float(np.linalg.norm(at[two] - at[one]))
+        along = (at[two] - at[one]) / length
+        end = frame.brick(STRETCH * length, float(stiffness) * STRETCH * length, 0.0, None)
+        frame.tie(end, [(two, 1.0), (one, -1.0)], along)
+        if preload:
+            frame.loads += [f"{node + 1}, {axis + 1}, {number(sign * float(preload) * float(along[axis]))}"
+                            for node, sign in ((one, 1.0), (two, -1.0)) for axis in range(3)
+                            if along[axis] and not frame.truss.nodes.fixed[node, axis]]
 
 
 def beams(frame: Frame) -> None:

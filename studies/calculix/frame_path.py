@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Computes a structure with beams in CalculiX along its temperature program, and compares it with the solver.
+"""Computes a structure with beams or condensed bodies in CalculiX along its temperature program, and compares it with the solver.
 
 Both compute the structure with STEP of its temperatures, loads, friction, preload, play and clearances, and results are
 divided by STEP. CalculiX then has small displacements, and so does the solver.
@@ -12,13 +12,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from statejump.bodies.checks import radius
 from statejump.core.comparison import Quantity
 from statejump.core.errors import FailedRun, NotAllowed
 from statejump.core.start import FRICTIONLESS
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.elements.body import BODY
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import engine_programs, whole_path
-from studies.calculix import ccx, frame
+from studies.calculix import bodies, ccx, frame
 from studies.calculix.ccx import number
 from studies.calculix.truss_sliding import (
     INCREMENTS, LEAST_JUMP, STEP, STICK, bars, corners, refuse_sliders, sliders, stop,
@@ -29,12 +31,13 @@ Numbers = NDArray[np.float64]
 TOLERANCE = 1e-3  # as the shear stiffness of slender beams, 12 E I/(k G A l²)
 # The default, 0.5 % of the mean force in the deck, ignores moments of hinges.
 CONVERGED = ["*CONTROLS, PARAMETERS=FIELD", "1.E-7, 1.E-4, , , 1.E-7"]
+INCREMENTS_OF_MESHES = 5  # of a branch, if bodies have meshes, whose equations take long
 JOINTS = ("slider", "hinge", "rigid")
-ELEMENTS = ("beam",)
+ELEMENTS = ("beam", "body", "spring")
 
 
 def answer(case: TrussCase, truss: ResolvedTruss, parts: int = 2, even_shear: bool = False) -> ccx.Answer:
-    """Run a structure with beams in CalculiX along its program and compare it with the solver.
+    """Run a structure with beams or condensed bodies in CalculiX along its program and compare it with the solver.
 
     :param parts: see :class:`.frame.Frame`, also for ``even_shear``
     :raises NotAllowed: the deck does not support the case
@@ -56,18 +59,28 @@ def answer(case: TrussCase, truss: ResolvedTruss, parts: int = 2, even_shear: bo
     path = whole_path(small, increments_per_branch=case.reduced_settings.increments_per_branch)
     at = [int(np.argmin(np.abs(path.states["time_s"] - time))) for time in times]
     own = path.states["displacement_m"][at] / STEP
-    rows = [_row("largest_displacement", "m", own, other),
-            _row("largest_bending_moment", "N m", _own_moments(path.states, at), moments)]
+    rows = [_row("largest_displacement", "m", own, other)]
+    if made.bending:
+        rows.append(_row("largest_bending_moment", "N m", _own_moments(path.states, at), moments))
     if case.has_jump:
         least = LEAST_JUMP * float(np.linalg.norm(own, axis=-1).max())
         rows.append(_row("largest_jump", "m", own[-1] - own[0], other[-1] - other[0], least))
     notes = [f"displacements are small: both have {STEP:g} of temperatures, loads, friction and play; results are "
-             "divided by this factor",
-             "moments about y and z of the sections, at the ends of the beams; torsion is not compared",
-             f"sticking friction and stops give way by 1/{STICK:g} of the stiffest bar or beam"]
-    if truss.dimension == 3:
-        notes.append("in space: beams of CalculiX have the torsional stiffness of bricks with rigid ends, not G J")
+             "divided by this factor"]
+    notes += _notes(truss, bool(made.bending))
     return ccx.Answer("\n".join(lines) + "\n", tuple(rows), tuple(notes))
+
+
+def _notes(truss: ResolvedTruss, bending: bool) -> list[str]:
+    notes = [f"sticking friction and stops give way by 1/{STICK:g} of the stiffest bar, beam or body"]
+    if bending:
+        notes.append("moments about y and z of the sections, at the ends of the beams; torsion is not compared")
+    if bending and truss.dimension == 3:
+        notes.append("in space: beams of CalculiX have the torsional stiffness of bricks with rigid ends, not G J")
+    meshes = truss.elements["body"]
+    for name in bodies.unmeshed(meshes):
+        notes.append(f"body {name!r}: its file contains no deck, the deck has its reduced stiffness")
+    return notes
 
 
 def _own_moments(states: Mapping[str, Numbers], at: list[int]) -> Numbers:
@@ -90,6 +103,9 @@ def _refuse(truss: ResolvedTruss) -> None:
     for section, names in [("constraint", truss.constraints.names), *parts]:
         if names:
             raise NotAllowed(section, code="fe_other_parts_with_beams")
+    for index in np.flatnonzero(truss.elements["spring"].cable)[:1]:
+        raise NotAllowed("cable", True, code="fe_cable", item=f"spring {truss.elements['spring'].names[index]!r}")
+    bodies.refuse(truss.elements["body"])
     ends = truss.nodes.position_m[truss.links.nodes]
     beams = truss.elements["beam"]
     between = (truss.nodes.position_m[beams.nodes[:, 1]] + beams.offset_second_m
@@ -108,12 +124,18 @@ def _refuse(truss: ResolvedTruss) -> None:
 def _small(truss: ResolvedTruss) -> ResolvedTruss:
     """Return the structure with temperatures, loads, friction, preload, play and clearances times STEP."""
     beams, joints, nodes, links = truss.elements["beam"], truss.sliders, truss.nodes, truss.links
-    hinges = truss.joints["hinge"]
+    hinges, springs, meshes = truss.joints["hinge"], truss.elements["spring"], truss.elements["body"]
+    preload = STEP * springs.preload_N
     return replace(
         truss, nodes=replace(nodes, force_N=STEP * nodes.force_N, moment_N_m=STEP * nodes.moment_N_m),
         links=replace(links, temperature_fraction=STEP * links.temperature_fraction),
     ).with_elements(beam=replace(
         beams, temperature_fraction=STEP * beams.temperature_fraction, gradient_per_m=STEP * beams.gradient_per_m,
+    ), spring=replace(
+        springs, preload_N=preload,
+        free_length_m=springs.free_length_m + (springs.preload_N - preload) / springs.stiffness_N_per_m,
+    ), body=replace(
+        meshes, temperature_fractions=tuple(STEP * fractions for fractions in meshes.temperature_fractions),
     )).with_joints(
         slider=replace(joints, friction_coefficient=STEP * joints.friction_coefficient,
                        clearance_minus_m=STEP * joints.clearance_minus_m,
@@ -123,42 +145,71 @@ def _small(truss: ResolvedTruss) -> ResolvedTruss:
 
 
 def deck(made: frame.Frame, times: list[float]) -> list[str]:
-    """Return the deck of a structure with beams: a step with its loads, and one for each branch of its program."""
+    """Return the deck of a structure: a step with its loads, and one for each branch of its program."""
     truss = made.truss
-    nodes, links, beams = truss.nodes, truss.links, truss.elements["beam"]
+    nodes, links, beams, meshes = truss.nodes, truss.links, truss.elements["beam"], truss.elements["body"]
     stiffness = links.axial_stiffness_N / links.stress_free_length_m
-    along = np.concatenate((stiffness, beams.stiffness_N_per_m))
-    turning = beams.bending_stiffness_N_m2.max(axis=1) / beams.stress_free_length_m
-    longest = float(np.concatenate((links.stress_free_length_m, beams.stress_free_length_m)).max())
+    springs = truss.elements["spring"]
+    along = np.concatenate((stiffness, beams.stiffness_N_per_m, springs.stiffness_N_per_m,
+                            BODY.stiffness_N_per_m(meshes)))
+    longest = _longest(truss)
     rigid = STICK * float(along.max())
     frame.rigid_bodies(made)
     for place, normal in enumerate(nodes.guide_normal):
         if normal.any():
             made.tie(None, [(place, 1.0)], normal)
-    frame.hinges(made, STICK * float(turning.max()))
+    if truss.joints["hinge"].names:
+        frame.hinges(made, STICK * _turning_stiffness(truss))
     heated = bars(made, stiffness)
+    frame.springs(made)
     stopped = sliders(made, rigid, longest)
     frame.beams(made)
-    springs = [stop(end, minus, plus, rigid, longest) for end, minus, plus in stopped]
-    springs += [stop(end, play, play, beyond, 1.0) for end, play, beyond in made.springs]
-    extra = [line for element, lines in enumerate(springs, start=made.element + 1)
+    hot = bodies.add(made, longest)
+    stops = [stop(end, minus, plus, rigid, longest) for end, minus, plus in stopped]
+    stops += [stop(end, play, play, beyond, 1.0) for end, play, beyond in made.springs]
+    extra = [line for element, lines in enumerate(stops, start=made.element + 1)
              for line in (f"*ELEMENT, TYPE=SPRINGA, ELSET=E{element}", f"{element}, {lines[0]}",
                           f"*SPRING, ELSET=E{element}, NONLINEAR", *lines[1:])]
-    found = ["*HEADING", f"statejump fe {truss.name}, beams", "*NODE, NSET=JOINTS", *_points(nodes.position_m, 1),
-             "*NODE, NSET=TURNS", *_points(nodes.position_m, made.count + 1), "*NODE, NSET=BRICKS", *made.nodes,
-             *made.sections, *extra, "*ELSET, ELSET=BENDING", *(f"{brick}," for of in made.bending for brick in of),
-             *made.written_equations(), "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BRICKS, 0.", "*BOUNDARY", *made.held]
+    cold = ["BRICKS, 0."] if made.nodes else []
+    found = ["*HEADING", f"statejump fe {truss.name}", "*NODE, NSET=JOINTS", *_points(nodes.position_m, 1),
+             "*NODE, NSET=TURNS", *_points(nodes.position_m, made.count + 1),
+             *(["*NODE, NSET=BRICKS", *made.nodes] if made.nodes else []), *made.sections, *extra, *_bending(made),
+             *made.written_equations(), "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *cold,
+             *(f"{node}, 0." for one in hot for node in one.nodes.tolist()), "*BOUNDARY", *made.held]
     changes = np.array([[program.temperature_change(time) for program in engine_programs(truss)] for time in times])
     slips = bool(extra) or any("*PLASTIC" in line for line in made.sections)
-    increments = INCREMENTS if slips else 1
+    increments = (INCREMENTS_OF_MESHES if meshes.names else INCREMENTS) if slips else 1
     for step in range(len(times)):
         found += [f"*STEP, INC={2 * increments}", "*STATIC, DIRECT" if slips else "*STATIC", f"{1 / increments}, 1."]
         found += CONVERGED if slips else []
         found += ["*CLOAD", *_loads(made)] if step == 0 and _loads(made) else []
-        found += ["*TEMPERATURE", *_temperatures(made, heated, changes[step])]
-        found += [f"*NODE PRINT, NSET=JOINTS, FREQUENCY={increments}", "U",
-                  f"*EL PRINT, ELSET=BENDING, FREQUENCY={increments}", "S", "*END STEP"]
+        found += ["*TEMPERATURE", *_temperatures(made, heated, changes[step]),
+                  *(line for one in hot for line in one.lines(meshes, changes[step]))]
+        found += [f"*NODE PRINT, NSET=JOINTS, FREQUENCY={increments}", "U"]
+        found += [f"*EL PRINT, ELSET=BENDING, FREQUENCY={increments}", "S"] if made.bending else []
+        found.append("*END STEP")
     return found
+
+
+def _bending(made: frame.Frame) -> list[str]:
+    bricks = [f"{brick}," for of in made.bending for brick in of]
+    return ["*ELSET, ELSET=BENDING", *bricks] if bricks else []
+
+
+def _turning_stiffness(truss: ResolvedTruss) -> float:
+    """Return the largest stiffness of a rotation [N m/rad]."""
+    beams = truss.elements["beam"]
+    found = [*(beams.bending_stiffness_N_m2.max(axis=1, initial=0.0) / beams.stress_free_length_m)]
+    for content, placed in zip(truss.elements["body"].contents, truss.elements["body"].placed):
+        found += [float(np.diag(placed.stiffness)[start + 3:start + 6].max())
+                  for start, dofs in zip(placed.starts, content.node_freedoms) if dofs == 6]
+    return float(max(found))
+
+
+def _longest(truss: ResolvedTruss) -> float:
+    """Return the largest length of a part [m]."""
+    return float(max([*truss.links.stress_free_length_m, *truss.elements["beam"].stress_free_length_m,
+                      *(radius(content.node_positions_m) for content in truss.elements["body"].contents)]))
 
 
 def _points(position_m: Numbers, first: int) -> list[str]:

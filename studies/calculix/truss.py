@@ -45,7 +45,7 @@ def answer(case: TrussCase) -> ccx.Answer:
     :raises StatejumpError: CalculiX is missing or failed
     """
     truss = case.resolve()
-    if truss.elements["beam"].names:
+    if truss.elements["beam"].names or truss.elements["body"].names:
         return frame_path.answer(case, truss)
     _refuse(truss)
     locked = pinned(truss)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from brackets import bracket
+from studies.calculix.bracket_decks import bracket
 from failures import failure
 from frames import NAMES, POSITIONS_M, expanded, mass, stiffness
 import statejump as sj

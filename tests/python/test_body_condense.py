@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from brackets import EXPANSION, MASS_KG, SANDWICH, bracket, closed_form, panel
+from studies.calculix.bracket_decks import EXPANSION, MASS_KG, SANDWICH, bracket, closed_form, panel
 from failures import failing
 import statejump as sj
 from statejump.bodies import CondensedBody

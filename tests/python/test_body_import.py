@@ -136,6 +136,56 @@ def test_op4_binary(tmp_path: Path, how: str, order: str, long: bool) -> None:
     assert body.modes == 2
 
 
+def op2(matrices: dict[str, np.ndarray], order: str = "<", external: bool = True) -> bytes:
+    def record(content: bytes) -> bytes:
+        mark = struct.pack(f"{order}i", len(content))
+        return mark + content + mark
+
+    def key(value: int) -> bytes:
+        return record(struct.pack(f"{order}i", value))
+
+    made = [key(3), record(struct.pack(f"{order}3i", 1, 2, 3)), key(7), record(b"NASTRAN FORT TAPE ID CODE - ")]
+    for name, matrix in matrices.items():
+        size = len(matrix)
+        title = ("EXTDB" if external else name).ljust(8).encode()
+        made += [key(2), record(title), key(-1), key(7), record(struct.pack(f"{order}7i", 101, size, size, 6, 2, 0, 0))]
+        made += [key(-2), key(1), key(0), key(2), record(name.ljust(8).encode()), key(-3), key(1)]
+        for j in range(size):
+            made.append(key(1))
+            filled = np.flatnonzero(matrix[:, j])
+            if len(filled):  # two strings
+                for rows in (filled[:1], np.arange(filled[0] + 1, size)):
+                    if len(rows):
+                        values = matrix[rows, j].astype(f"{order}f8").tobytes()
+                        made += [key(1 + 2 * len(rows)), record(struct.pack(f"{order}i", rows[0] + 1) + values)]
+            made += [key(-4 - j), key(1)]
+        made += [key(0), key(0)]
+    return b"".join([*made, key(0)])
+
+
+@pytest.mark.parametrize("external", [True, False])
+@pytest.mark.parametrize("order", "<>")
+def test_op2(tmp_path: Path, order: str, external: bool) -> None:
+    (tmp_path / "x.op2").write_bytes(op2({"MATK" if external else "KAA": with_modes()}, order, external))
+    (tmp_path / "x.asm").write_text(grids() + f"SPOINT  {1000:8d}{'THRU':8s}{1001:8d}\n")
+    body = import_body([tmp_path / "x.op2", tmp_path / "x.asm"])
+    agrees(body)
+    assert body.modes == 2
+
+
+def test_op2_without_stiffness_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "x.asm").write_text(grids())
+    (tmp_path / "x.op2").write_bytes(op2({"MUG1": np.eye(3)}))
+    with failing("matrix_missing", known="MUG1"):
+        import_body([tmp_path / "x.op2", tmp_path / "x.asm"])
+    (tmp_path / "y.op2").write_bytes(op2({"KAA": stiffness()})[:2000])
+    with failing("matrix_file_damaged", form="an op2 file"):
+        import_body([tmp_path / "y.op2", tmp_path / "x.asm"])
+    (tmp_path / "z.op2").write_bytes(struct.pack("<iqi", 8, 3, 8))
+    with failing("matrix_op2_words"):
+        import_body([tmp_path / "z.op2", tmp_path / "x.asm"])
+
+
 def nodes_deck(directions: bool = True) -> str:
     lines = [f"{number},{x:.17g},{y:.17g},{z:.17g}" for number, (x, y, z) in zip(NUMBERS, POSITIONS_M)]
     turned = "*NSET,NSET=B\n11\n*TRANSFORM,NSET=B,TYPE=R\n0.6,0.8,0,-0.8,0.6,0\n" if directions else ""

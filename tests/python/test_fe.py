@@ -234,6 +234,7 @@ FRAMES: dict[str, Callable[[], dict[str, Any]]] = {
     "offset": lambda: propped(offset_first_m=[0.05, 0.1]),
     "in space, both moments released": lambda: propped(3, released_first=["Ry", "Rz"]),
     "in space, offset": lambda: propped(3, offset_first_m=[0.05, 0.1, -0.05]),
+    "spring": lambda: frame(spring=[{"name": "S", "nodes": ["A", "C"], "stiffness_N_per_m": 1e5, "preload_N": 50.0}]),
     "rigid body": carried,
     "hinge": jointed,
     "stiff hinge": lambda: jointed(stiffness_N_m_per_rad=3e3),
@@ -253,11 +254,11 @@ def test_ends_of_beams_and_hinges_agree(what: str) -> None:
     assert all(row.difference < limit for row in rows), rows
 
 
-def test_beams_beside_springs_are_refused() -> None:
-    spring = {"name": "S", "nodes": ["A", "C"], "stiffness_N_per_m": 1e3}
+def test_beams_beside_cables_are_refused() -> None:
+    cable = {"name": "S", "nodes": ["A", "C"], "stiffness_N_per_m": 1e3, "cable": True}
     with pytest.raises(StatejumpError) as refused:
-        calculix.answer(sj.load(frame(spring=[spring])).definition)
-    assert refused.value == failure("fe_other_parts_with_beams", key="spring")
+        calculix.answer(sj.load(frame(spring=[cable])).definition)
+    assert refused.value == failure("fe_cable", key="cable")
 
 
 @with_calculix

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from statejump.bodies.checks import (
     Measured, as_loads, checked_mass, checked_stiffness, free_shapes_of_loads, rigid_motions,
 )
+from statejump.bodies.mesh_deck import MeshDeck, checked
 from statejump.core.errors import NotAllowed
 from statejump.core.later import Later
 from statejump.core.notes import Note
@@ -77,6 +78,7 @@ class CondensedBody(Attached):
     :param source: program and file that the matrices come from
     :param patch: how interface nodes follow their patches, one of ``PATCHES``
     :param measured: errors of the given matrices, before they were symmetrised and projected
+    :param deck: the deck that the body was condensed from; None: unknown
     """
 
     node_names: tuple[str, ...]
@@ -92,6 +94,7 @@ class CondensedBody(Attached):
     source: str
     patch: str
     measured: Measured
+    deck: MeshDeck | None = None
 
     @property
     def interface_dofs(self) -> int:
@@ -135,6 +138,7 @@ def from_arrays(
     node_freedoms: ArrayLike | None = None, pattern_names: Sequence[str] = (), free_shapes: ArrayLike | None = None,
     loads: ArrayLike | None = None, mass: ArrayLike | None = None, points: Points | None = None,
     mesh: Mesh | None = None, reference_temperature_K: float | None = None, source: str = "arrays", patch: str = "",
+    deck: MeshDeck | None = None,
 ) -> CondensedBody:
     """Return a condensed body, checked, symmetrised and with rigid motions projected out.
 
@@ -171,7 +175,8 @@ def from_arrays(
     return CondensedBody(
         names, _locked(positions), _locked(freedoms), _locked(kept), patterns, _locked(shapes),
         None if masses is None else _locked(masses), _points(points, len(patterns), size),
-        _mesh(mesh, len(patterns), size), reference_temperature_K, source, patch, measured)
+        _mesh(mesh, len(patterns), size), reference_temperature_K, source, patch, measured,
+        checked(deck, len(names), len(patterns)))
 
 
 def _locked(values: Any) -> Any:

@@ -70,9 +70,9 @@ def rigid_motions(positions_m: Matrix, freedoms: NDArray[np.int64], modes: int =
 
 
 def radius(positions_m: Matrix) -> float:
-    """Return the largest distance of nodes from their centre [m]; 1 if they coincide."""
+    """Return the largest distance of nodes from their centre [m]; 1 if they coincide up to rounding."""
     found = float(np.linalg.norm(positions_m - positions_m.mean(axis=0), axis=1).max())
-    return found if found > 0 else 1.0
+    return found if found > 1e-12 * float(np.abs(positions_m).max(initial=0.0)) else 1.0
 
 
 def scales(positions_m: Matrix, freedoms: NDArray[np.int64], stiffness: Matrix) -> Matrix:

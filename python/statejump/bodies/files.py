@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.bodies.body import CondensedBody, Mesh, Points, from_arrays
+from statejump.bodies.mesh_deck import MeshDeck
 from statejump.core import libraries
 from statejump.core.errors import Unreadable, located
 from statejump.core.hdf5 import foreign, is_ours, made, objects, opened
@@ -45,6 +46,9 @@ def write_body(path: str | Path, body: CondensedBody) -> None:
             mesh = body.mesh
             arrays |= {"mesh/point_m": mesh.points_m, "mesh/cells": mesh.cells, "mesh/rows": mesh.rows,
                        "mesh/pattern": mesh.patterns}
+        if body.deck is not None:
+            arrays |= _of_deck(body.deck)
+            file.attrs.update({"deck_length_m": body.deck.length_m, "deck_force_N": body.deck.force_N})
         for name, values in arrays.items():
             if values is None:
                 continue
@@ -53,6 +57,12 @@ def write_body(path: str | Path, body: CondensedBody) -> None:
             else:
                 packed = {"compression": "gzip"} if values.size > 4096 else {}
                 file.create_dataset(name, data=values, **packed)
+
+
+def _of_deck(deck: MeshDeck) -> dict[str, Any]:
+    text = np.frombuffer(deck.text.encode("utf-8"), dtype=np.uint8)
+    return {"deck/text": text, "deck/kind": deck.kinds, "deck/node": deck.nodes,
+            "deck/temperature": deck.temperatures, "deck/gradient": deck.gradients}
 
 
 def read_body(path: str | Path) -> CondensedBody:
@@ -91,7 +101,16 @@ def _body(found: dict[str, h5py.Group | h5py.Dataset]) -> CondensedBody:
         loads=_numbers(found, "pattern/load", needed=False), mass=_numbers(found, "mass", needed=False),
         points=_points(found, len(patterns)), mesh=_mesh(found),
         reference_temperature_K=None if reference is None else float(np.asarray(reference).item()),
-        source=_text(about.get("source", "")), patch=_text(about.get("patch", "")))
+        source=_text(about.get("source", "")), patch=_text(about.get("patch", "")), deck=_deck(found, about))
+
+
+def _deck(found: dict[str, h5py.Group | h5py.Dataset], about: dict[str, Any]) -> MeshDeck | None:
+    if "/deck/text" not in found:
+        return None
+    text = np.asarray(_numbers(found, "deck/text"), dtype=np.uint8).tobytes().decode("utf-8", "replace")
+    units = [float(np.asarray(about.get(key, 1.0)).item()) for key in ("deck_length_m", "deck_force_N")]
+    return MeshDeck(text, _names(found, "deck/kind"), _numbers(found, "deck/node"),
+                    _numbers(found, "deck/temperature"), _numbers(found, "deck/gradient"), *units)
 
 
 def _points(found: dict[str, h5py.Group | h5py.Dataset], patterns: int) -> Points | None:

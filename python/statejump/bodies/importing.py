@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Import of reduced matrices: Nastran's DMIG and op4 files, matrix files of Abaqus."""
+"""Import of reduced matrices: Nastran's DMIG, op2 and op4 files, matrix files of Abaqus."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from statejump.bodies.body import CondensedBody, from_arrays
-from statejump.bodies.formats import bulk, mtx, op4
+from statejump.bodies.formats import bulk, mtx, op2, op4
 from statejump.bodies.formats.labelled import MODE, Label, Labelled
 from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, located
 from statejump.core.table_files import check_table, read_known
@@ -20,10 +20,11 @@ from statejump.kinds.truss.importing.to_case import Units
 
 Matrix = NDArray[np.float64]
 
-STIFFNESS = ("KAAX", "KAA", "KXX", "K2GG", "K2PP", "STIFFNESS", "KGG", "K")
-MASS = ("MAAX", "MAA", "MXX", "M2GG", "M2PP", "MASS", "MGG", "M")
+STIFFNESS = ("KAAX", "KAA", "MATK", "KXX", "K2GG", "K2PP", "STIFFNESS", "KGG", "K")
+MASS = ("MAAX", "MAA", "MATM", "MXX", "M2GG", "M2PP", "MASS", "MGG", "M")
 DECKS = (".inp",)
-OP4, MTX, TABLE = (".op4",), (".mtx",), (".csv",)
+OF_MATRICES = {".op4": op4.read, ".op2": op2.read, ".mtx": mtx.read}
+TABLE = (".csv",)
 
 
 @attrs.define
@@ -44,8 +45,8 @@ def import_body(
 ) -> CondensedBody:
     """Return the condensed body in files of a finite-element program.
 
-    Files are recognised by their suffix: ``.op4``; ``.mtx``; ``.inp`` (Abaqus: nodes and ``*TRANSFORM``); ``.csv``
-    (nodes: columns name, x_m, y_m, z_m); all others are Nastran's bulk data (``.pch``, ``.asm``, ``.bdf``).
+    Files are recognised by their suffix: ``.op4``; ``.op2``; ``.mtx``; ``.inp`` (Abaqus: nodes and ``*TRANSFORM``);
+    ``.csv`` (nodes: columns name, x_m, y_m, z_m); all others are Nastran's bulk data (``.pch``, ``.asm``, ``.bdf``).
 
     :param stiffness: name of the stiffness; default: a usual name, such as KAAX, KAA, KXX
     :param load: name of a matrix of thermal loads, a column for each pattern
@@ -85,9 +86,8 @@ def _read(paths: Sequence[Path], units: Units, systems: Mapping[int, int]) -> _F
     texts = []
     for path in paths:
         suffix = path.suffix.lower()
-        if suffix in OP4 or suffix in MTX:
-            read = op4.read(path) if suffix in OP4 else mtx.read(path)
-            for name, matrix in read.items():
+        if suffix in OF_MATRICES:
+            for name, matrix in OF_MATRICES[suffix](path).items():
                 found.matrices[name], found.files[name] = matrix, path
         elif suffix in DECKS:
             positions, axes, _ = read_nodes(path)

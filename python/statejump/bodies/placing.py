@@ -86,7 +86,8 @@ class Placed:
         moved = displacement_m - displacement_m.mean(axis=1, keepdims=True)
         six = self.freedoms == 6
         turns = Rotation.from_rotvec(rotation_rad[:, six].reshape(-1, 3)).as_matrix().reshape(len(moved), -1, 3, 3)
-        squared = float((drawn**2).sum(axis=1).mean()) or 1.0
+        squared = float((drawn**2).sum(axis=1).mean())
+        squared = squared if squared > (1e-12 * np.abs(nodes_m).max()) ** 2 else 1.0
         sums = np.einsum("sni,nj->sij", drawn + moved, drawn) + squared * turns.sum(axis=1)
         left, _, right = np.linalg.svd(sums)
         left[:, :, 2] *= np.linalg.det(left @ right)[:, None]

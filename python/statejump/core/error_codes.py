@@ -808,11 +808,29 @@ CODES: dict[str, Code] = {
     "fe_link_not_as_drawn": Code(cause="'statejump fe' takes links as long as drawn, {drawn_m:.9g} m"),
     "fe_no_links": Code(cause="'statejump fe' takes trusses with links"),
     "fe_other_joints": Code(cause="beside them there are other joints, or partial slip"),
+    "fe_body_deck_keyword": Code(
+        cause="'statejump fe' does not renumber *{keyword} in the deck of a body",
+        remedy="condense a deck without it",
+    ),
+    "fe_body_expanding": Code(
+        cause="'statejump fe' has no deck of patches that expand",
+        remedy="condense the body with mean or rigid patches",
+    ),
+    "fe_body_factor": Code(
+        cause="'statejump fe' computes the mesh of a body with its own stiffness",
+        remedy="scale the elastic constants of its deck and condense it again",
+    ),
+    "fe_body_units": Code(
+        cause="'statejump fe' needs decks of bodies in SI units",
+        remedy="convert the deck to m and N and condense it again",
+    ),
+    "fe_cable": Code(cause="'statejump fe' has no cables"),
     "fe_other_parts": Code(
         cause="'statejump fe' takes trusses of links, sliders, Iwan joints and joints with clearance only",
     ),
     "fe_other_parts_with_beams": Code(
-        cause="'statejump fe' takes beams together with links, sliders, hinges and rigid bodies only",
+        cause="'statejump fe' takes beams and condensed bodies together with links, springs, sliders, hinges and rigid "
+        "bodies only",
     ),
     "fe_slider_branches": Code(cause="sliders of 'statejump fe' are followed over at most {most} branches"),
     "fe_slider_shape": Code(cause="sliders of 'statejump fe' follow 'triangle' and 'table'"),
@@ -1062,6 +1080,7 @@ CODES: dict[str, Code] = {
     ),
     "body_data_missing": Code(what="{data_set} is missing"),
     "body_data_type": Code(what="{data_set} is damaged", cause="must be {wanted}"),
+    "body_deck": Code(cause="must have a kind for each node, and temperatures for each pattern and node of the deck"),
     "body_dof_order": Code(
         what="stiffness: rigid motions cause forces, relative error {error:.2g}",
         cause="its rows are in another order: {order}",
@@ -1175,10 +1194,14 @@ CODES: dict[str, Code] = {
         remedy="give the .asm or .pch file of the same run",
     ),
     "matrix_load_columns": Code(cause="it has {columns} columns for {names} pattern names"),
+    "matrix_op2_words": Code(
+        what="no OUTPUT2 file with words of four bytes",
+        remedy="write the matrices with EXTSEOUT(DMIGPCH) or OUTPUT4",
+    ),
     "matrix_missing": Code(
         what="no stiffness",
         cause="the files have the matrices {known}",
-        remedy="name the stiffness",
+        remedy="name the stiffness, or write it in Nastran with EXTSEOUT(DMIGPCH) or EXTSEOUT(DMIGOP2)",
     ),
     "matrix_node_missing": Code(
         what="node {node} has no position",

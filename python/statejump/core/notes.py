@@ -85,6 +85,10 @@ NOTES: dict[str, str] = {
         "body {body!r} bends by {angle_rad:.2g} rad against its frame; a linear body neglects the shortening of "
         "{strain:.2g} (angle squared over 24), {share:.2g} times its largest thermal strain: divide the body"
     ),
+    "body_without_modes": (
+        "body {body!r}: motion does not use the {modes} modes of its file; frequencies with them: statejump modes"
+    ),
+    "joint_turns_nodes": "no contributions of joints: the friction of {joint} is a moment on nodes that rotate",
     "several_reactions": (
         "{named}: constrain a displacement more than once {at}; the reactions are one solution of many, the "
         "displacements are unique"

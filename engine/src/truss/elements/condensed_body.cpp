@@ -416,11 +416,13 @@ CondensedBody::Frame CondensedBody::frame(const Model& model) const {
   for (const int node : nodes) centre += model.nodes[index(node)].position / count;
   made.nodes = nodes;
   made.squared_radius = 0.0;
+  double farthest = 0.0;  // from the origin of the structure
   int row = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Node& node = model.nodes[index(nodes[i])];
     made.drawn.push_back(node.position - centre);
     made.squared_radius += made.drawn.back().squaredNorm() / count;
+    farthest = std::max(farthest, node.position.norm());
     made.rows.push_back(row);
     made.arms.push_back(node.arm);
     const int site = rotation_site(model, nodes[i]);
@@ -429,7 +431,8 @@ CondensedBody::Frame CondensedBody::frame(const Model& model) const {
     row += rotating[i] ? 6 : 3;
   }
   made.rows.push_back(row);
-  if (made.squared_radius == 0.0) made.squared_radius = 1.0;
+  // Nodes at one place, up to rounding: only rotations determine the frame, with any weight.
+  if (made.squared_radius <= std::pow(1e-12 * farthest, 2)) made.squared_radius = 1.0;
   return made;
 }
 

@@ -20,6 +20,7 @@ from statejump.bodies.condense.deck import BodyDeck, corners_of, read, with_dens
 from statejump.bodies.condense.patches import patch
 from statejump.bodies.condense.patterns import Pattern, of_names, pattern
 from statejump.bodies.condense.reduce import Reduced, balanced, reduce, rigid_columns
+from statejump.bodies.mesh_deck import MOST_TEXT, MeshDeck
 from statejump.core import libraries
 from statejump.core.errors import FailedRun, NotAllowed, StatejumpError, located
 from statejump.core.scratch import scratch
@@ -303,7 +304,19 @@ def _body(mesh: _Mesh, interfaces: Sequence[Interface], names: Sequence[str], pa
         reduced.stiffness * energy / np.outer(unit, unit), node_freedoms=[one.dofs for one in interfaces],
         pattern_names=names, free_shapes=shapes * unit, mass=mass, points=body_points, mesh=recovery.surface(),
         reference_temperature_K=reference_K, source=f"CalculiX, {deck.path.name}",
-        patch=kinds.pop() if len(kinds) == 1 else "")
+        patch=kinds.pop() if len(kinds) == 1 else "", deck=_stored_deck(mesh, interfaces, patterns))
+
+
+def _stored_deck(mesh: _Mesh, interfaces: Sequence[Interface], patterns: Sequence[Pattern]) -> MeshDeck | None:
+    """Return the deck for the file of the body; None: it is too long."""
+    deck = mesh.deck
+    text = "\n".join(deck.lines) + "\n"
+    if len(text) > MOST_TEXT:
+        return None
+    used = sorted({node for _, nodes in deck.elements for node in nodes})
+    return MeshDeck(text, tuple(one.kind for one in interfaces), np.array(used, dtype=np.int64),
+                    np.array([[one.nodes[node] for node in used] for one in patterns]).reshape(-1, len(used)),
+                    np.array([one.gradient for one in patterns]), mesh.units.length_m, mesh.units.force_N)
 
 
 def _free_shapes(mesh: _Mesh, interfaces: Sequence[Interface], patterns: Sequence[Pattern], reduced: Reduced,

@@ -16,7 +16,7 @@ from statejump.kinds.truss.check_means import check_means
 from statejump.kinds.truss.constraints import LEAST_COEFFICIENT, TURNS
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.beam import BEAM
-from statejump.kinds.truss.elements.body import BODY, names_of_points
+from statejump.kinds.truss.elements.body import BODY, columns_of, names_of_points
 from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
@@ -135,11 +135,33 @@ def _members(case: TrussSections) -> None:
         if item.temperature_fraction != 1:
             raise NotAllowed("temperature_fraction", item.temperature_fraction, code="temperature_from_members_file",
                              **where)
-    known = {item.name for item, _, _ in _followers(case)}
-    kinds = " and ".join(f"no {section}" for section in ("link", *(joint.section for joint in _WITH_TEMPERATURE)))
+    of_bodies = _columns_of_bodies(case, columns, file)
+    known = {*(item.name for item, _, _ in _followers(case)), *of_bodies}
+    sections = ("link", *(joint.section for joint in _WITH_TEMPERATURE), *(("pattern of a body",) if of_bodies else ()))
+    kinds = " and ".join(f"no {section}" for section in sections)
     for name in members.names:
         if name not in known:
             raise NotAllowed("thermal.members_file", file, code="column_of_several", column=name, kinds=kinds)
+
+
+def _columns_of_bodies(case: TrussSections, columns: set[str], file: Any) -> set[str]:
+    """Check that each pattern of a body has a column or a program; return the possible names of their columns."""
+    known: set[str] = set()
+    for body in case.body:
+        where = BODY.where(body.name)
+        for names in columns_of(body):
+            known.update(names)
+            if not columns.intersection(names):
+                if body.programs is None:
+                    raise NotAllowed("thermal.members_file", file, code="no_column_of_item",
+                                     part=f"pattern {names[0]!r}", remedy="or name programs for the body")
+                continue
+            if body.programs is not None:
+                raise NotAllowed("programs", body.programs, code="temperature_from_members_file", **where)
+            if body.temperature_fractions is not None:
+                raise NotAllowed("temperature_fractions", body.temperature_fractions,
+                                 code="temperature_from_members_file", **where)
+    return known
 
 
 def _alternatives(case: TrussSections) -> None:

@@ -17,6 +17,7 @@ from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Range, StatejumpError
 from statejump.core.figures import save
 from statejump.core.tables import Shown, write_csv
+from statejump.kinds.truss.body_modes import with_modes
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.draw_modes import draw_modes
 from statejump.kinds.truss.free_motion import held
@@ -125,10 +126,11 @@ def _linearised(case: TrussCase) -> dict[str, Any]:
     """Return stiffness, masses and constraints about the start. :raises EngineFailed: there is no equilibrium"""
     truss = case.resolve()
     try:
-        return dict(_engine.truss_linearised(**engine_items(truss), inertia=inertia(case),
-                                             start_friction=truss.start_friction))
+        found = dict(_engine.truss_linearised(**engine_items(truss), inertia=inertia(case),
+                                              start_friction=truss.start_friction))
     except _engine.EngineFailure as failure:
         raise EngineFailed(failure, case=truss.name, place=truss.name) from None
+    return with_modes(found, truss)
 
 
 def _lowest_free(found: dict[str, Any], count: int, shift: float,

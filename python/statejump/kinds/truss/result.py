@@ -17,6 +17,7 @@ from statejump.core.run import (
 from statejump.core.start import carried
 from statejump.core.units import unit_of
 from statejump.kinds.truss import compare, means, notes
+from statejump.kinds.truss.body_modes import without_modes
 from statejump.kinds.truss.body_points import displacements_m, point_names, positions_m
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
@@ -367,7 +368,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
         "rejected_steps": float(motion.rejected_steps),
     }
     run = _run(case, "reduced", plain, energy, items, lambda: _events(case, motion), summary, native=motion,
-               warnings=(*motion.warnings, *_beyond(case, plain, items)))
+               warnings=(*motion.warnings, *without_modes(case.resolve()), *_beyond(case, plain, items)))
     velocity = Column(states["velocity_m_per_s"], "m/s", "nodes")
     heat = Column(of_joints, "J", "contacts", note=HEAT)
     moments = {} if not case.drive else {

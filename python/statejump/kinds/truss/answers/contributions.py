@@ -10,8 +10,12 @@ import numpy as np
 
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.answers.outputs import Output
+from statejump.kinds.truss.body_points import displacements_m
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.along_axis import AlongAxis
+from statejump.kinds.truss.joints.pad import PadType
 from statejump.kinds.truss.joints.protocol import Loads
+from statejump.kinds.truss.joints.rigid import RigidType
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, whole_path
 
@@ -56,9 +60,23 @@ def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
     """Return the truss with frictionless joints and with all temperatures held at ΔT = 0."""
     for joint in JOINTS:
         truss = joint.without_friction(truss)
+    beams, bodies = truss.elements["beam"], truss.elements["body"]
+    truss = truss.with_elements(
+        beam=replace(beams, temperature_fraction=0 * beams.temperature_fraction,
+                     gradient_per_m=0 * beams.gradient_per_m),
+        body=replace(bodies, temperature_fractions=tuple(0 * one for one in bodies.temperature_fractions)))
     # No item uses the programs any more, but all programs must have one duration.
     return replace(truss, links=replace(truss.links, temperature_fraction=0 * truss.links.temperature_fraction),
                    programs=len(truss.programs) * (truss.programs[0].repeated(1),))
+
+
+def turning_joint(truss: ResolvedTruss) -> tuple[str, str] | None:
+    """Return the type and name of a joint whose friction is a moment on a node that rotates; None if there is none.
+    Nodes carry no moments in the truss without friction."""
+    if truss.bending() is None:
+        return None
+    return next(((joint.section, truss.joints[joint.section].names[0]) for joint in JOINTS
+                 if truss.joints[joint.section].names and not isinstance(joint, (AlongAxis, PadType, RigidType))), None)
 
 
 def contributions(
@@ -83,7 +101,8 @@ def contributions(
     def value(load: np.ndarray) -> float:
         loaded = replace(free, nodes=replace(free.nodes, force_N=free.nodes.force_N + load))
         found = whole_path(loaded, increments_per_branch=1, locate_events=False)
-        return output.value(found.states["displacement_m"][-1])
+        last = {name: values[-1:] for name, values in found.states.items()}
+        return output.value(displacements_m(found.truss, last)[0])
 
     first, last = value(start.sum(axis=0)), value(end.sum(axis=0))
     shares = np.zeros(len(start))

@@ -10,6 +10,7 @@ import numpy as np
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.jumps import most_moved, node_jumps, rounding_m
+from statejump.kinds.truss.body_points import displacements_m
 from statejump.kinds.truss.references import known_name
 from statejump.kinds.truss.solve import TrussPath
 
@@ -19,7 +20,7 @@ class Output:
     """An output of a truss whose jump is divided among the joints.
 
     :param short: short name of the output
-    :param value: the output as a function of displacements (nodes, 3), projected on the direction of the jump
+    :param value: the output as a function of displacements (n, 3) of nodes and points of bodies, projected on the direction of the jump
     :param vector: all components of the output as a function of displacements
     """
 
@@ -32,12 +33,12 @@ class Output:
 
     def jump(self, found: TrussPath) -> float:
         """Return its jump over all cycles."""
-        ends = found.cycle_ends["displacement_m"]
+        ends = cycle_ends_m(found)
         return self.value(ends[-1]) - self.value(ends[0])
 
     def over_cycles(self, found: TrussPath) -> np.ndarray:
         """Return the change of the vector over each cycle (cycles, components)."""
-        return np.diff([self.vector(moved) for moved in found.cycle_ends["displacement_m"]], axis=0)
+        return np.diff([self.vector(moved) for moved in cycle_ends_m(found)], axis=0)
 
     @staticmethod
     def sizes(motion: np.ndarray) -> np.ndarray:
@@ -48,6 +49,11 @@ class Output:
         """Return the largest change that counts as rounding; for a tilt [rad] it is relative to the truss size."""
         size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
         return rounding_m(found) / size if self.unit == "rad" else rounding_m(found)
+
+
+def cycle_ends_m(found: TrussPath) -> np.ndarray:
+    """Return the displacements (cycles + 1, n, 3) of nodes, and of points of bodies, at the ends of the cycles [m]."""
+    return displacements_m(found.truss, found.cycle_ends)
 
 
 def node_output(found: TrussPath, name: str | None = None) -> Output:
@@ -69,7 +75,7 @@ def node_output(found: TrussPath, name: str | None = None) -> Output:
 
 def rms_output(found: TrussPath, surface: reflector.Surface) -> Output:
     """Return the output "RMS [m] over the surface of how the best-fit residuals change"."""
-    ends = found.cycle_ends["displacement_m"]
+    ends = cycle_ends_m(found)
     start = surface.fit(ends[0]).residual_m
     change = surface.fit(ends[-1]).residual_m - start
     size = float(np.linalg.norm(change))
@@ -82,7 +88,7 @@ def rms_output(found: TrussPath, surface: reflector.Surface) -> Output:
 
 def tilt_output(found: TrussPath, surface: reflector.Surface) -> Output:
     """Return the tilt [rad] of the surface along its jump."""
-    ends = found.cycle_ends["displacement_m"]
+    ends = cycle_ends_m(found)
     change = surface.fit(ends[-1]).tilt_rad - surface.fit(ends[0]).tilt_rad
     size = float(np.linalg.norm(change))
     way = change / size if size > 0 else 0 * change

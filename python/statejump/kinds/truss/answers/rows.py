@@ -12,7 +12,9 @@ from statejump.core.units import unit_of
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.contributions import Contributions
 from statejump.kinds.truss.answers.jumps import node_jumps
+from statejump.kinds.truss.answers.outputs import cycle_ends_m
 from statejump.kinds.truss.answers.sensitivity import Sensitivity
+from statejump.kinds.truss.body_points import displacements_m
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
@@ -67,11 +69,12 @@ def surface_rows(found: TrussPath, surface: reflector.Surface) -> list[Row]:
     """Return the best-fit paraboloid at the start, at the hottest point and after every cycle, as rows."""
     states, ends = found.states, found.cycle_ends
     hottest = int(np.argmax(states["temperature_change_K"]))
-    asked = [("start", 0.0, ends["displacement_m"][0]),
-             ("hottest", float(states["temperature_change_K"][hottest]), states["displacement_m"][hottest])]
-    asked += [(f"after cycle {cycle}", float(ends["temperature_change_K"][cycle]), ends["displacement_m"][cycle])
+    hot = displacements_m(found.truss, {name: values[hottest:hottest + 1] for name, values in states.items()})[0]
+    after = cycle_ends_m(found)
+    asked = [("start", 0.0, after[0]), ("hottest", float(states["temperature_change_K"][hottest]), hot)]
+    asked += [(f"after cycle {cycle}", float(ends["temperature_change_K"][cycle]), after[cycle])
               for cycle in range(1, len(ends["time_s"]))]
-    start = surface.fit(ends["displacement_m"][0])
+    start = surface.fit(after[0])
     rows = []
     for when, change, moved in asked:
         fit = surface.fit(moved)

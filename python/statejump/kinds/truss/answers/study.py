@@ -19,13 +19,12 @@ from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.units import plain
 from statejump.kinds.truss.answers import reflector, rows
-from statejump.kinds.truss.answers.contributions import Contributions, contributions
+from statejump.kinds.truss.answers.contributions import Contributions, contributions, turning_joint
 from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.answers.outputs import Output, chosen_output
 from statejump.kinds.truss.answers.sensitivity import STEP, sensitivities
 from statejump.kinds.truss.answers.verdict import RESOLVED, Verdict, judged, others
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.check_mechanism import refuse_beams
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath
 from statejump.results.contents import Answers, Scalar
@@ -144,7 +143,6 @@ def study(
     STEPS.check("step", step)
     case = _of_cycles(case, cycles)
     truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
-    refuse_beams(truss, "the study of answers")
     with phase("path") as on_progress:
         found = quick_path(truss, increments, on_progress)
     asked = chosen_output(found, output)
@@ -218,6 +216,10 @@ def _shares(found: TrussPath, output: Output, on_progress: OnProgress, tables: d
             notes: list[str]) -> Contributions | None:
     if not found.truss.number_of_joints():
         notes.append("the truss has no joints: none are ranked")
+        return None
+    turning = turning_joint(found.truss)
+    if turning is not None:
+        notes.append(Note("joint_turns_nodes", joint=f"{turning[0]} {turning[1]!r}"))
         return None
     try:
         shares = contributions(found, output, on_progress)

@@ -13,7 +13,6 @@ from statejump.core.units import plain
 from statejump.kinds.truss.answers.jumps import most_moved, quick_path, rounding_m
 from statejump.kinds.truss.answers.verdict import RESOLVED
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.check_mechanism import refuse_beams
 from statejump.kinds.truss.control.candidates import candidates
 from statejump.kinds.truss.control.search import Jump, Search, jump_of
 from statejump.kinds.truss.references import known_name
@@ -43,7 +42,6 @@ def control(
     if with_dem:
         raise NotAllowed("--dem", code="dem_of_control", case=case.name)
     truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
-    refuse_beams(truss, "the study of control")
     names = truss.nodes.names
     if choices.node is not None:
         known_name("--node", choices.node, choices.node, dict.fromkeys(names), "node", case=case.name)

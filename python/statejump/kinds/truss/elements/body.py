@@ -166,7 +166,8 @@ class BodyType(ElementType[Body, Bodies]):
                                  axes_of(item.axis_x, item.axis_y)))
             patterns.append(which)
             named = known.program.called(item.programs) + 1 if item.programs else np.zeros(len(which), dtype=int)
-            programs.append(named)
+            own = [next((known.member[name] for name in of if name in known.member), 0) for of in columns_of(item)]
+            programs.append(np.where(named == 0, own, named) if own else named)
             fractions.append(np.ones(len(which)) if item.temperature_fractions is None
                              else np.array(item.temperature_fractions))
         return Bodies(
@@ -240,6 +241,15 @@ def _patterns(item: Body, content: CondensedBody) -> np.ndarray:
     """Return the numbers of the thermal patterns that act."""
     names = content.pattern_names if item.patterns is None else item.patterns
     return np.array([content.pattern_names.index(name) for name in names], dtype=int)
+
+
+def columns_of(item: Body) -> list[tuple[str, ...]]:
+    """Return, for each acting pattern, the names that its column in a file of members may have: BODY/PATTERN, and BODY
+    if one pattern acts."""
+    if item.content is None:
+        return []
+    names = item.content.pattern_names if item.patterns is None else item.patterns
+    return [(f"{item.name}/{name}", *((item.name,) if len(names) == 1 else ())) for name in names]
 
 
 def names_of_points(item: Body) -> list[str]:

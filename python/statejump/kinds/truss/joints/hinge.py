@@ -94,7 +94,7 @@ class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
         return [Symbol(truss.nodes.position_m[joints.nodes[:, 0]], "o", 0.9, 0.7, order=4.6)]
 
     def add_friction(self, loads: Loads, joints: Hinges, state: Mapping[str, np.ndarray]) -> None:
-        """Add nothing: the answers, which need it, refuse cases with hinges."""
+        """Add nothing: the friction is a moment on nodes, and the answers rank no joints then."""
 
 
 HINGE = HingeType()
