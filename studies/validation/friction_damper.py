@@ -2,7 +2,7 @@
 """Measured banded friction damper with backlash: identified on one half, predicted on the other."""
 from __future__ import annotations
 
-from loops import loss, predicted, read
+from loops import blind, loss, read
 from manual import MEASUREMENT, Curve, Entry, Picture, Row, show
 
 import numpy as np
@@ -17,10 +17,13 @@ def entry() -> Entry:
     moved, force, first = data["displacement_m"], data["force_N"], data["time_s"] < SPLIT_S
     found = sj.identify({"displacement_m": moved[first], "force_N": force[first]},
                         model=["coulomb_play", "coulomb_soft_play"])
-    guess, last = predicted(found, moved), ~first
+    prediction, last = found.predict(moved), ~first
+    guess, ours = prediction.force, found.predict(moved[last])
     rows = [
-        Row("energy loss of the second half", "kJ", loss(force[last], moved[last]) / 1e3,
-            loss(guess[last], moved[last]) / 1e3),
+        blind("energy loss of the second half", "kJ", loss(force[last], moved[last]) / 1e3, ours.loss_J / 1e3,
+              ours.loss_error_J / 1e3),
+        Row("rows of the second half within the predicted interval", "1", 0.95,
+            float(np.mean(np.abs(guess - force)[last] <= prediction.force_error)), low=0.90, high=1.0),
         Row("force, rms difference in the second half", "kN", 0.0,
             float(np.sqrt(np.mean((guess - force)[last] ** 2))) / 1e3,
             scale=float(np.abs(force[last]).max()) / 1e3, tolerance=0.08),

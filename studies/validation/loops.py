@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from manual import Row
 
 from statejump.identification.hysteresis import remembered
 
@@ -21,6 +22,11 @@ def read(name: str) -> dict[str, np.ndarray]:
 def predicted(found: Any, displacement: np.ndarray, fresh: bool = False) -> np.ndarray:
     """Return the force that an identified joint predicts along a path."""
     return np.asarray(found.fit.model.answer(found.values, displacement, remembered(displacement, fresh)))
+
+
+def blind(quantity: str, unit: str, measured: float, ours: float, half: float) -> Row:
+    """Return the row of a blind prediction: it passes if the measured value is within ``ours`` ± ``half``."""
+    return Row(quantity, unit, measured, ours, low=measured - half, high=measured + half)
 
 
 def loss(force: np.ndarray, displacement: np.ndarray) -> float:

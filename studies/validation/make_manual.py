@@ -21,7 +21,7 @@ matplotlib.use("agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import statejump as sj  # noqa: E402
-from manual import ORDER, PARTS, Entry, Row, rounded  # noqa: E402
+from manual import MEASUREMENT, ORDER, PARTS, Entry, Row, rounded  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 PAGES = HERE.parents[1] / "docs" / "validation" / "manual"
@@ -137,17 +137,17 @@ def save(figure: plt.Figure, name: str) -> None:
 def index(entries: Sequence[Entry]) -> str:
     """Return the page that lists all entries."""
     failing = [entry for entry in entries if not entry.passed]
-    measured = [entry for entry in entries if entry.kind == "measurement" or entry.kind == ORDER]
+    kinds = [entry.kind for entry in entries]
     parts = [(HERE / "index_head.md").read_text(encoding="utf-8").strip()
-             .replace("ENTRIES", str(len(entries))).replace("MEASURED", str(len(measured)))
-             .replace("FAILING", str(len(failing)))]
+             .replace("ENTRIES", str(len(entries))).replace("MEASURED", str(kinds.count(MEASUREMENT)))
+             .replace("ORDERS", str(kinds.count(ORDER))).replace("FAILING", str(len(failing)))]
     head = ["| part | entries | fail | largest difference | entry |", "|---|---:|---:|---:|---|"]
     body = []
     for part in PARTS:
         own = [entry for entry in entries if entry.part == part]
         if not own:
             continue
-        judged = [entry for entry in own if entry.kind not in ("measurement", ORDER)]
+        judged = [entry for entry in own if entry.kind not in (MEASUREMENT, ORDER)]
         worst = max(judged or own, key=lambda entry: entry.largest)
         head.append(f"| {part} | {len(own)} | {sum(not entry.passed for entry in own)} | {rounded(worst.largest)} | "
                     f"[{worst.name}]({worst.name}.md) |")

@@ -18,7 +18,7 @@ ORDER = "order of magnitude"  # a measurement whose parameters are not all known
 
 PARTS = (
     "Statics and thermal bars", "Beams and frames", "Dynamics with friction", "Contact and laws", "Thermal walking",
-    "Joints from tests", "Whole structures", "The paper's own figures", "Frictional shakedown",
+    "Joints from tests", "Whole structures", "Condensed bodies", "The paper's own figures", "Frictional shakedown",
 )
 
 

@@ -2,7 +2,7 @@
 """Measured reciprocating tribometer: identified on one half, predicted on the other."""
 from __future__ import annotations
 
-from loops import loss, predicted, read
+from loops import blind, loss, read
 from manual import MEASUREMENT, Curve, Entry, Picture, Row, show
 
 import numpy as np
@@ -17,12 +17,14 @@ def entry() -> Entry:
     moved, force, first = data["displacement_m"], data["force_N"], data["time_s"] < SPLIT_S
     found = sj.identify({"displacement_m": moved[first], "force_N": force[first]}, model=["coulomb", "coulomb_spring"],
                         normal_force_N=NORMAL_N)
-    guess = predicted(found, moved)
-    last = ~first
+    prediction, last = found.predict(moved), ~first
+    guess, ours = prediction.force, found.predict(moved[last])
     sliding = np.abs(force[last]) > 0.5 * np.abs(force[last]).max()
     rows = [
-        Row("energy loss of the second half", "mJ", 1e3 * loss(force[last], moved[last]),
-            1e3 * loss(guess[last], moved[last])),
+        blind("energy loss of the second half", "mJ", 1e3 * loss(force[last], moved[last]), 1e3 * ours.loss_J,
+              1e3 * ours.loss_error_J),
+        Row("rows of the second half within the predicted interval", "1", 0.95,
+            float(np.mean(np.abs(guess - force)[last] <= prediction.force_error)), low=0.90, high=1.0),
         Row("mean friction while it slides, second half", "N", float(np.abs(force[last][sliding]).mean()),
             float(np.abs(guess[last][sliding]).mean())),
         Row("force, rms difference in the second half", "N", 0.0, float(np.sqrt(np.mean((guess - force)[last] ** 2))),

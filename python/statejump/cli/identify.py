@@ -11,6 +11,8 @@ from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
 from statejump.core.results_folder import Results
 from statejump.identification import identify
+from statejump.identification.loop import read_loop
+from statejump.identification.prediction import compared, write_prediction
 
 # Options of the command by argument of the library, for messages.
 OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence", "target": "--for",
@@ -38,11 +40,14 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
 @click.option("--ignore", "ignored", multiple=True, metavar="COLUMN", help="Leave out a column of the table.")
 @click.option("--columns", default=None, metavar="NAMES",
               help="Names of the columns, for a table without a header or in place of its own: disp_mm,force_kN.")
+@click.option("--predict", "other_file", default=None, metavar="OTHER.csv", type=click.Path(path_type=Path),
+              help="Another test of the same joint: its force and energy loss are predicted and compared.")
 @RESULTS
 @QUIET
 def identify_command(
     loop_file: Path, model: str, start: str, confidence: float, target: str | None, normal_force: float | None,
-    journal_radius: float | None, ignored: tuple[str, ...], columns: str | None, results: Results, quiet: bool,
+    journal_radius: float | None, ignored: tuple[str, ...], columns: str | None, other_file: Path | None,
+    results: Results, quiet: bool,
 ) -> None:
     """Clearance, stiffness, friction and preload of a joint from the measured loop in LOOP.csv, with intervals.
 
@@ -54,11 +59,13 @@ def identify_command(
       statejump identify hinge.csv --normal-force 100
     """
     console = make_console(quiet)
+    given = [name.strip() for name in columns.split(",")] if columns else ()
     with results.folder(f"identify_{loop_file.stem}") as folder:
         try:
             found = identify(loop_file, model=model, start=start, confidence=confidence, target=target,
                              normal_force_N=normal_force, journal_radius_m=journal_radius, ignored=ignored,
-                             columns=[name.strip() for name in columns.split(",")] if columns else ())
+                             columns=given)
+            other = read_loop(other_file, start, ignored, given) if other_file else None
         except StatejumpError as refused:
             if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
                 refused.key = OPTIONS[refused.key]
@@ -70,7 +77,12 @@ def identify_command(
             if refused.code == "table_without_header":
                 refused.remedy = "--columns names them, for example --columns displacement_mm,force_kN"
             raise
-        written = folder.publish(found.write(folder.staged))
+        files = found.write(folder.staged)
+        if other is not None:
+            files.append(write_prediction(found, other, folder.staged / "prediction.csv"))
+        written = folder.publish(files)
     print_shown(found.summary_lines(), console)
+    if other is not None:
+        print_shown([compared(found, other)], console)
     console.print(found.joint(), markup=False, highlight=False)
     console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -4,7 +4,8 @@
 The force has Gaussian noise with one unknown standard deviation σ. It may be correlated: n rows then count as m = n/τ
 independent rows. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval of a parameter
 ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p) for p parameters, and κ the
-factor by which correlation increases the variance of an estimate.
+factor by which correlation increases the variance of an estimate. If residuals are correlated, the change of the joint
+between cycles gives a second product κ F, with F(1, C - 1) for C cycles; the larger product counts.
 """
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ from scipy.stats import f as f_distribution
 from statejump.identification.loop import Loop
 from statejump.identification.models import (
     MODELS, PARAMETERS, POSITIVE, START, Model, containing, with_part)
-from statejump.identification.noise import Noise, noise_of
+from statejump.identification.noise import Noise, between_cycles, cycles_of, noise_of
 
 STARTS = 4  # number of grid points at which searches start
 STARTS_FROM_PART = 2  # the same for searches that start from the optimum of a part
@@ -367,16 +368,17 @@ def intervals(fits: Fits, model: str, confidence: float, names: Sequence[str] | 
 
 
 def _intervals(problem: Problem, best: Fit, confidence: float, names: Sequence[str]) -> Intervals:
-    jacobian = problem.jacobian(best.point)
-    noise = noise_of(problem.residual(best.point), jacobian, problem.displacement)
+    jacobian, residual = problem.jacobian(best.point), problem.residual(best.point)
+    noise, cycles = noise_of(residual, jacobian, problem.displacement), cycles_of(problem.displacement)
     freedoms = best.rows - len(problem.names)
     quantile = float(f_distribution.ppf(confidence, 1, max(1.0, best.rows / noise.rows_each - len(problem.names))))
+    changes = float(f_distribution.ppf(confidence, 1, max(1, cycles[-1]))) if noise.correlated else 0.0
     profiles, ends = {}, {}
     for name in names:
         place = problem.names.index(name)
         others = np.delete(jacobian, place, axis=1)
         own = jacobian[:, place] - others @ np.linalg.lstsq(others, jacobian[:, place], rcond=None)[0]
-        most = noise.inflation(own) * quantile / freedoms
+        most = max(noise.inflation(own) * quantile, between_cycles(own, residual, cycles) * changes) / freedoms
         widest = float(problem.high[place] - problem.low[place])
         size = float(own @ own)
         step = sqrt(most * best.squares / size) if size > 0 else inf

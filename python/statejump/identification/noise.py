@@ -8,6 +8,10 @@ autoregression of the residuals (Burg) estimates the correlations; BIC chooses i
 
 The misfit of the formula of a joint repeats in every cycle, so averaging over cycles does not reduce it. With
 correlation c of residuals one cycle apart, C cycles multiply κ by 1 + (C - 1) c.
+
+A measured joint also changes from cycle to cycle. Let g be the sums of h r in each cycle, with the residual r. Cycles
+that change independently give the variance κ s²/(h·h) with κ = Σ g² C/((C - 1) s² h·h), known with C - 1 degrees of
+freedom (the cluster-robust variance of K.-Y. Liang and S. L. Zeger, Biometrika 73, 1986).
 """
 from __future__ import annotations
 
@@ -20,6 +24,8 @@ from scipy.signal import fftconvolve, lfilter
 
 MOST_LAGS = 12  # largest order of the autoregression
 ROWS_A_LAG = 10
+FEWEST_CYCLES = 3  # below this, a loop does not show how a joint changes from cycle to cycle
+TURN = 0.2  # smallest way back at a reversal of a cycle, as a fraction of the range of the path
 SAME_PLACE = 0.5  # correlation of the displacement above which a lag counts as a whole number of cycles
 CHANCE = 5.0  # number of standard deviations of a correlation that count as chance; the largest of hundreds is tested
 FORGOTTEN = 1e-4  # correlations below this are omitted
@@ -42,6 +48,11 @@ class Noise:
     @cached_property
     def _by_cycles(self) -> float:
         return 1 + max(0.0, self.cycles - 1) * self.repeated
+
+    @property
+    def correlated(self) -> bool:
+        """Whether neighbouring rows are correlated: noise of the rig, or misfit of the formula."""
+        return len(self.correlations) > 1 or self.repeated > 0
 
     @cached_property
     def rows_each(self) -> float:
@@ -121,6 +132,41 @@ def _near(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
             break
         found = _correlations(refined, len(residual))
     return Noise(found)
+
+
+def cycles_of(path: np.ndarray) -> np.ndarray:
+    """Return the number of the cycle of every row, from 0. A cycle begins at every second reversal of the path; rows
+    before the second reversal belong to the first cycle."""
+    least = TURN * float(np.ptp(path))
+    turns: list[int] = []
+    heading = low = high = 0
+    for row, here in enumerate(path):
+        low, high = (row if here < path[low] else low), (row if here > path[high] else high)
+        if heading >= 0 and path[high] - here > least:
+            turns += [high] if heading else []
+            heading, low = -1, row
+        elif heading <= 0 and here - path[low] > least:
+            turns += [low] if heading else []
+            heading, high = 1, row
+    found = np.zeros(len(path), dtype=int)
+    for turn in turns[2::2]:
+        found[turn:] += 1
+    return found
+
+
+def between_cycles(derivative: np.ndarray, residual: np.ndarray, cycles: np.ndarray) -> float:
+    """Return κ of a joint that changes from cycle to cycle; 0 if the loop has too few cycles.
+
+    :param derivative: h of the estimated parameter in every row, see the module
+    :param residual: residual of every row
+    :param cycles: number of the cycle of every row
+    """
+    count = int(cycles[-1]) + 1
+    size = float(residual @ residual) / len(residual) * float(derivative @ derivative)
+    if count < FEWEST_CYCLES or not size > 0:
+        return 0.0
+    sums = np.bincount(cycles, derivative * residual)
+    return float(sums @ sums) * count / (count - 1) / size
 
 
 def _products(values: np.ndarray, lags: int) -> np.ndarray:

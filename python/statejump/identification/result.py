@@ -20,6 +20,7 @@ from statejump.identification import case_section
 from statejump.identification.fit import Fit, Fits, Interval, intervals
 from statejump.identification.loop import Loop, read_loop
 from statejump.identification.models import MODELS, PARAMETERS
+from statejump.identification.prediction import Prediction, predicted
 
 if TYPE_CHECKING:
     import pandas
@@ -81,6 +82,13 @@ class Identification:
     def answer(self) -> np.ndarray:
         """Return the fitted force in every row."""
         return self.fit.model.answer(self.fit.values, self.loop.displacement, self.loop.memory)
+
+    def predict(self, displacement: np.ndarray) -> Prediction:
+        """Return the predicted force and energy loss of another test of this joint, with intervals.
+
+        :param displacement: path of the other test [m], or its rotations [rad]
+        """
+        return predicted(self, displacement)
 
     @property
     def entries(self) -> list[case_section.Entry]:
