@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Searches of SciPy and NLopt for the point of least cost."""
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+from statejump.core import libraries
+from statejump.design.file import COBYLA, NLOPT, SLSQP
+from statejump.design.problem import Problem
+
+COBYLA_PATHS = 20  # evaluations per iteration of the other methods
+RADIUS = 0.3  # first change of x
+
+
+def search(problem: Problem, method: str, x: np.ndarray, iterations: int, tolerance: float) -> str:
+    """Search from a point; the problem keeps the best point. Return how the search ended."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of steps outside of the bounds
+        return {SLSQP: _slsqp, COBYLA: _cobyla, NLOPT: _nlopt}.get(method, _trust)(problem, x, iterations, tolerance)
+
+
+def _slsqp(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -> str:
+    constraint = {"type": "ineq", "fun": problem.margins, "jac": problem.margin_gradients}
+    found = libraries.scipy("optimize").minimize(
+        problem.cost, x, jac=problem.cost_gradient, bounds=problem.bounds, constraints=[constraint], method="SLSQP",
+        options={"maxiter": iterations, "ftol": tolerance})
+    return str(found.message)
+
+
+def _trust(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -> str:
+    optimize = libraries.scipy("optimize")
+    constraint = optimize.NonlinearConstraint(problem.margins, 0.0, np.inf, jac=problem.margin_gradients,
+                                              hess=optimize.BFGS())
+    found = optimize.minimize(
+        problem.cost, x, jac=problem.cost_gradient, hess=optimize.BFGS(), constraints=[constraint],
+        bounds=optimize.Bounds(*np.transpose(problem.bounds), keep_feasible=False), method="trust-constr",
+        options={"maxiter": iterations, "gtol": tolerance, "xtol": tolerance, "initial_tr_radius": RADIUS})
+    return str(found.message)
+
+
+def _cobyla(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -> str:
+    low, high = np.transpose(problem.bounds)
+    constraints = [{"type": "ineq", "fun": problem.margins}, {"type": "ineq", "fun": lambda x: x - low},
+                   {"type": "ineq", "fun": lambda x: high - x}]
+    found = libraries.scipy("optimize").minimize(
+        problem.cost, x, constraints=constraints, method="COBYLA",
+        options={"maxiter": COBYLA_PATHS * iterations, "rhobeg": RADIUS, "tol": tolerance})
+    return str(found.message)
+
+
+def _nlopt(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -> str:
+    nlopt = libraries.nlopt()
+    solver = nlopt.opt(nlopt.LD_MMA, len(x))
+    solver.set_lower_bounds([low for low, _ in problem.bounds])
+    solver.set_upper_bounds([high for _, high in problem.bounds])
+
+    def cost(at: np.ndarray, gradient: Any) -> float:
+        if gradient.size:
+            gradient[:] = problem.cost_gradient(at)
+        return problem.cost(at)
+
+    def violated(result: np.ndarray, at: np.ndarray, gradient: Any) -> None:
+        result[:] = -problem.margins(at)
+        if gradient.size:
+            gradient[:] = -problem.margin_gradients(at)
+
+    solver.set_min_objective(cost)
+    solver.add_inequality_mconstraint(violated, np.zeros(len(problem.rows)))
+    solver.set_ftol_rel(tolerance)
+    solver.set_maxeval(iterations)
+    solver.optimize(x)
+    return f"NLopt ended with {solver.last_optimize_result()}"
