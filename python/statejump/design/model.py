@@ -64,7 +64,7 @@ class Model:
         keys = {split_path(target.path)[::2] for group in self.groups for target in group.targets}
         self.arrays = all(key in self.numbers for key in keys) and self.base.truss.gravity_m_per_s2 is None
 
-    def path(self, x: Sequence[float], setting: Setting = NOMINAL,
+    def path(self, x: np.ndarray, setting: Setting = NOMINAL,
              more: Iterable[tuple[str, float]] = ()) -> TrussPath:
         """Solve the path at a point. :raises StatejumpError: the truss has no path
 
@@ -74,7 +74,7 @@ class Model:
         truss = self._truss(x, setting, more) if self.arrays else self.case(x, setting, more=more).resolve()
         return quick_path(truss, self.base.reduced_settings.increments_per_branch, cycle_ends_only=True)
 
-    def _truss(self, x: Sequence[float], setting: Setting, more: Iterable[tuple[str, float]]) -> ResolvedTruss:
+    def _truss(self, x: np.ndarray, setting: Setting, more: Iterable[tuple[str, float]]) -> ResolvedTruss:
         factors = {key: np.full(len(values), setting.of(key[1])) for key, values in self.numbers.items()
                    if setting.of(key[1]) != 1.0}
         pairs = [(target.path, value / target.value) for group, one in zip(self.groups, x)
@@ -89,11 +89,11 @@ class Model:
             own = self.numbers[section, key]
             factors.setdefault((section, key), np.ones(len(own)))[place] = value / own[place]
         truss = self.truss
-        for (section, key), factor in factors.items():
-            truss = changed(truss, section, key, factor)
+        for (section, key), of_items in factors.items():
+            truss = changed(truss, section, key, of_items)
         return truss
 
-    def case(self, x: Sequence[float], setting: Setting = NOMINAL, name: str = "",
+    def case(self, x: np.ndarray, setting: Setting = NOMINAL, name: str = "",
              more: Iterable[tuple[str, float]] = ()) -> TrussCase:
         """Return the case at a point. :raises StatejumpError: the case is not allowed"""
         values: dict[str, object] = {}

@@ -18,6 +18,7 @@ NO_PATH = -1.0  # margin of the rows of a truss without a path
 FAR = 0.5  # margin beyond which the rows of a point of the grid get no derivatives
 SLACK = 2e-5  # margin that the search keeps, so that rounding violates no requirement
 MASS_STEP = 1e-4
+RADIUS = 0.4  # largest change of x of a short step: factor 1.5
 
 
 @dataclass
@@ -56,6 +57,7 @@ class Problem:
     first_failure: str = ""
     iteration: int = 0
     derivatives: int = 0
+    centre: np.ndarray | None = None  # of the box of RADIUS in which the search stays; None: no box
     _kept: dict[bytes, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -65,7 +67,10 @@ class Problem:
     @property
     def bounds(self) -> list[tuple[float, float]]:
         """Bounds of x."""
-        return [(group.x(group.low), group.x(group.high)) for group in self.model.groups]
+        found = [(group.x(group.low), group.x(group.high)) for group in self.model.groups]
+        if self.centre is None:
+            return found
+        return [(max(low, at - RADIUS), min(high, at + RADIUS)) for (low, high), at in zip(found, self.centre)]
 
     def clipped(self, x: np.ndarray) -> np.ndarray:
         """Return x within its bounds, which searches leave by rounding."""

@@ -92,7 +92,7 @@ class Requirement:
 
 def requirements_of(case: TrussCase, wanted: Sequence[DesignRequirement]) -> list[Requirement]:
     """Return the requirements. :raises StatejumpError: one is invalid for this case"""
-    found = []
+    found = list[Requirement]()
     for one in wanted:
         try:
             if one.name in [other.name for other in found]:

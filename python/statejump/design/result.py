@@ -19,7 +19,8 @@ from statejump.kinds.truss.case import TrussCase
 
 _WRITE = Later("statejump.design.page:write")
 AT_BOUND = 1e-6
-HOLDS, NOT_MET, FALSE, FRAGILE, UNCHECKED = "holds", "not met", "false optimum", "fails under scatter", "not checked"
+HOLDS, NOT_MET, UNCHECKED, FRAGILE = "holds", "not met", "not checked", "fails under scatter"
+FALSE, RELIES = "false optimum", "relies on friction"
 MOST_PROBABLE = 0.05  # probability of a violation above which a design fails under scatter
 SHOWN = 40  # variables in the printed table
 
@@ -81,14 +82,15 @@ class Design:
 
     @property
     def verdict(self) -> str:
-        """HOLDS, NOT_MET, FALSE, FRAGILE or UNCHECKED."""
+        """HOLDS, NOT_MET, FALSE, RELIES, FRAGILE or UNCHECKED."""
         if self.margins.min() < 0:
             return NOT_MET
-        if self.profile is not None and self.profile.false:
-            return FALSE
+        false = self.profile is not None and self.profile.false
         if self.scatter is None:
-            return UNCHECKED
-        return FRAGILE if self.scatter.probability > MOST_PROBABLE else HOLDS
+            return FALSE if false else UNCHECKED
+        if self.scatter.probability > MOST_PROBABLE:
+            return FALSE if false else FRAGILE
+        return RELIES if false else HOLDS
 
     @property
     def sentences(self) -> list[str]:

@@ -9,10 +9,12 @@ import numpy as np
 
 from statejump.core import libraries
 from statejump.design.file import COBYLA, NLOPT, SLSQP
-from statejump.design.problem import Problem
+from statejump.design.problem import RADIUS, Problem
 
+MOST_SHORT, SHORT = 12, 8  # short steps, and iterations of each
 COBYLA_PATHS = 20  # evaluations per iteration of the other methods
-RADIUS = 0.3  # first change of x
+FIRST = 0.3  # first change of x
+COBYLA_RADIUS = 1.0
 
 
 def search(problem: Problem, method: str, x: np.ndarray, iterations: int, tolerance: float) -> str:
@@ -20,6 +22,19 @@ def search(problem: Problem, method: str, x: np.ndarray, iterations: int, tolera
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of steps outside of the bounds
         return {SLSQP: _slsqp, COBYLA: _cobyla, NLOPT: _nlopt}.get(method, _trust)(problem, x, iterations, tolerance)
+
+
+def short_steps(problem: Problem, method: str, x: np.ndarray, tolerance: float) -> str:
+    """Search from a point in boxes of limited size, so that no step leads across the top of a tent."""
+    message = ""
+    for _ in range(MOST_SHORT):
+        problem.centre = x
+        message = search(problem, method, x, SHORT, tolerance)
+        moved, x = np.abs(problem.best.x - x), problem.best.x
+        if problem.best.margin >= 0 and moved.max() < 0.99 * RADIUS or moved.max() < tolerance:
+            break
+    problem.centre = None
+    return f"short steps: {message}"
 
 
 def _slsqp(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -> str:
@@ -37,7 +52,7 @@ def _trust(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -
     found = optimize.minimize(
         problem.cost, x, jac=problem.cost_gradient, hess=optimize.BFGS(), constraints=[constraint],
         bounds=optimize.Bounds(*np.transpose(problem.bounds), keep_feasible=False), method="trust-constr",
-        options={"maxiter": iterations, "gtol": tolerance, "xtol": tolerance, "initial_tr_radius": RADIUS})
+        options={"maxiter": iterations, "gtol": tolerance, "xtol": tolerance, "initial_tr_radius": FIRST})
     return str(found.message)
 
 
@@ -47,7 +62,7 @@ def _cobyla(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) 
                    {"type": "ineq", "fun": lambda x: high - x}]
     found = libraries.scipy("optimize").minimize(
         problem.cost, x, constraints=constraints, method="COBYLA",
-        options={"maxiter": COBYLA_PATHS * iterations, "rhobeg": RADIUS, "tol": tolerance})
+        options={"maxiter": COBYLA_PATHS * iterations, "rhobeg": COBYLA_RADIUS, "tol": tolerance})
     return str(found.message)
 
 

@@ -111,7 +111,7 @@ def _groups(variable: DesignVariable, targets: list[Target]) -> list[Group]:
         raise NotAllowed("high", variable.high, code="not_above_low", low=variable.low)
     if log and not variable.low > 0:
         raise NotAllowed("low", variable.low, code="design_log_not_positive")
-    sets = [(one,) for one in targets] if variable.each else [tuple(targets)]
+    sets: list[tuple[Target, ...]] = [(one,) for one in targets] if variable.each else [tuple(targets)]
     return [Group(f"{variable.name}[{number}]" if len(sets) > 1 else variable.name, variable.name, one, variable.low,
                   variable.high, log, shifts) for number, one in enumerate(sets, start=1)]
 
