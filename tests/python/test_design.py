@@ -62,7 +62,6 @@ def test_falling_side_of_the_tent_is_a_false_optimum() -> None:
     assert found.verdict == FALSE and found.profile is not None
     assert found.margins.min() > 0.5 and found.profile.peak[1] > 1
     assert "falling side" in " ".join(found.sentences)
-    assert design(beyond, WANTED).verdict != FALSE  # the grid has friction below that of the case
 
 
 def test_no_design_meets_an_impossible_requirement(rib: sj.Case) -> None:
@@ -113,9 +112,9 @@ def test_areas_and_positions_of_least_mass_at_a_frequency() -> None:
     heavy = sj.load(document)
     own = sj.modes(heavy, 1).frequency_Hz[0]
     found = design(heavy, {
-        "variable": [{"name": "A", "keys": ["link.*.cross_section_area_m2"], "low": 0.2, "high": 5.0, "each": False}],
-        "cost": {"formula": "mass_kg"},
-        "requirement": [{"name": "f", "quantity": "frequency_Hz", "at_least": 0.5 * own}]})
+        "variable": [{"name": "A", "keys": ["link.*.cross_section_area_m2"], "low": 0.6, "high": 2.0, "each": False}],
+        "cost": {"formula": "mass_kg"}, "design": {"iterations": 5},
+        "requirement": [{"name": "f", "quantity": "frequency_Hz", "at_least": 0.85 * own}]})
     assert found.margins.min() >= 0 and found.cost < found.cost_before
 
 

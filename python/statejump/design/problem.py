@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -59,6 +60,7 @@ class Problem:
     derivatives: int = 0
     centre: np.ndarray | None = None  # of the box of RADIUS in which the search stays; None: no box
     _kept: dict[bytes, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
+    _masses: dict[bytes, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.rows = rows_of(self.requirements, self.grid)
@@ -76,13 +78,23 @@ class Problem:
         """Return x within its bounds, which searches leave by rounding."""
         return np.clip(x, *np.transpose(self.bounds))
 
+    def _mass_kg(self, x: np.ndarray) -> float:
+        if x.tobytes() not in self._masses:
+            self._masses = {x.tobytes(): total_mass_kg(self.model.case(x).resolve())}
+        return self._masses[x.tobytes()]
+
     def _named(self, x: np.ndarray) -> dict[str, np.ndarray]:
         factors: dict[str, list[float]] = {}
         for group, one in zip(self.model.groups, x):
             factors.setdefault(group.name, []).append(group.factor(one))
         named = {name: np.array(values) for name, values in factors.items()}
-        named[MASS] = np.array(total_mass_kg(self.model.case(x).resolve()) if self.formula.uses_mass else 0.0)
+        named[MASS] = np.array(self._mass_kg(x) if self.formula.uses_mass else 0.0)
         return named
+
+    @cached_property
+    def scale(self) -> float:
+        """Size of the cost, by which searches divide it, so that tolerances are relative."""
+        return abs(self.cost(self.best.x)) or 1.0
 
     def cost(self, x: np.ndarray) -> float:
         """Return the cost."""
@@ -99,8 +111,7 @@ class Problem:
             slopes[group.name][index, place] = group.slope(one)
             if self.formula.uses_mass:
                 moved = np.eye(len(x))[index] * MASS_STEP
-                ends = (total_mass_kg(self.model.case(x + sign * moved).resolve()) for sign in (1, -1))
-                slopes[MASS][index] = (next(ends) - next(ends)) / (2 * MASS_STEP)
+                slopes[MASS][index] = (self._mass_kg(x + moved) - self._mass_kg(x - moved)) / (2 * MASS_STEP)
         return self.formula.gradient(values, slopes)
 
     def _blocks(self) -> list[Setting | None]:

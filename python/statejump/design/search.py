@@ -40,8 +40,8 @@ def short_steps(problem: Problem, method: str, x: np.ndarray, tolerance: float) 
 def _slsqp(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -> str:
     constraint = {"type": "ineq", "fun": problem.margins, "jac": problem.margin_gradients}
     found = libraries.scipy("optimize").minimize(
-        problem.cost, x, jac=problem.cost_gradient, bounds=problem.bounds, constraints=[constraint], method="SLSQP",
-        options={"maxiter": iterations, "ftol": tolerance})
+        lambda at: problem.cost(at) / problem.scale, x, jac=lambda at: problem.cost_gradient(at) / problem.scale,
+        bounds=problem.bounds, constraints=[constraint], method="SLSQP", options={"maxiter": iterations, "ftol": tolerance})
     return str(found.message)
 
 
@@ -50,8 +50,9 @@ def _trust(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -
     constraint = optimize.NonlinearConstraint(problem.margins, 0.0, np.inf, jac=problem.margin_gradients,
                                               hess=optimize.BFGS())
     found = optimize.minimize(
-        problem.cost, x, jac=problem.cost_gradient, hess=optimize.BFGS(), constraints=[constraint],
-        bounds=optimize.Bounds(*np.transpose(problem.bounds), keep_feasible=False), method="trust-constr",
+        lambda at: problem.cost(at) / problem.scale, x,
+        jac=lambda at: problem.cost_gradient(at) / problem.scale,
+        hess=optimize.BFGS(), constraints=[constraint], bounds=optimize.Bounds(*np.transpose(problem.bounds), keep_feasible=False), method="trust-constr",
         options={"maxiter": iterations, "gtol": tolerance, "xtol": tolerance, "initial_tr_radius": FIRST})
     return str(found.message)
 
@@ -61,7 +62,7 @@ def _cobyla(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) 
     constraints = [{"type": "ineq", "fun": problem.margins}, {"type": "ineq", "fun": lambda x: x - low},
                    {"type": "ineq", "fun": lambda x: high - x}]
     found = libraries.scipy("optimize").minimize(
-        problem.cost, x, constraints=constraints, method="COBYLA",
+        lambda at: problem.cost(at) / problem.scale, x, constraints=constraints, method="COBYLA",
         options={"maxiter": COBYLA_PATHS * iterations, "rhobeg": COBYLA_RADIUS, "tol": tolerance})
     return str(found.message)
 
@@ -74,8 +75,8 @@ def _nlopt(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -
 
     def cost(at: np.ndarray, gradient: Any) -> float:
         if gradient.size:
-            gradient[:] = problem.cost_gradient(at)
-        return problem.cost(at)
+            gradient[:] = problem.cost_gradient(at) / problem.scale
+        return problem.cost(at) / problem.scale
 
     def violated(result: np.ndarray, at: np.ndarray, gradient: Any) -> None:
         result[:] = -problem.margins(at)
