@@ -400,11 +400,11 @@ CODES: dict[str, Code] = {
     "design_log_not_positive": Code(cause="a factor on a log scale must be above 0", remedy="set scale = 'linear'"),
     "design_no_guarantee": Code(
         what="the bound of {output} is not guaranteed, its margin is not derived",
-        remedy="see 'statejump bounds' for the reason"),
+        remedy="see 'statejump bounds' for the reason, or use the quantity 'linear_bound'"),
     "design_no_keys": Code(cause="must name at least one key"),
     "design_no_node": Code(cause="no node that moves has such a name"),
     "design_no_value": Code(cause="the case has no value other than 0 that a factor could change"),
-    "design_output_of_bound": Code(cause="an output belongs to the quantity 'bound', and to no other"),
+    "design_output_of_bound": Code(cause="an output belongs to bounds, and to no other quantity"),
     "design_too_many": Code(cause="{count} variables are more than the {most} allowed"),
     "design_without_jump": Code(cause="the program does not return to its initial temperature"),
     "openturns_missing": Code(

@@ -14,7 +14,8 @@ from statejump.schema.items import Item
 SLSQP, TRUST, COBYLA, NLOPT = "slsqp", "trust-constr", "cobyla", "nlopt-mma"
 METHODS = (SLSQP, TRUST, COBYLA, NLOPT)
 JUMP, TILT, RMS, MASS, FREQUENCY, BOUND = "jump_m", "tilt_rad", "rms_m", "mass_kg", "frequency_Hz", "bound"
-QUANTITIES = (JUMP, TILT, RMS, MASS, FREQUENCY, BOUND)
+LINEAR_BOUND = "linear_bound"
+QUANTITIES = (JUMP, TILT, RMS, MASS, FREQUENCY, BOUND, LINEAR_BOUND)
 OF_PATH = (JUMP, TILT, RMS)
 SCALES = ("log", "linear")
 NAME = "[A-Za-z_][A-Za-z0-9_]*"
@@ -57,11 +58,12 @@ class DesignCost(Section):
 class DesignRequirement(Item):
     """A quantity with a limit. Every node has a constraint of its own, at each point of the grid of [robust]."""
 
-    quantity: str = choice(..., QUANTITIES, "over all cycles; bound: of the jump over any temperature history")
+    quantity: str = choice(..., QUANTITIES,
+                           "over all cycles; bound: guaranteed for any temperature history; linear_bound: without the margin")
     at_most: float | None = parameter(None, "as quantity", -math.inf, math.inf, "this or at_least")
     at_least: float | None = parameter(None, "as quantity", -math.inf, math.inf, "this or at_most")
     nodes: list[str] = texts(["*"], "of jump_m: names, * for all nodes or as part of a name")
-    output: str | None = text(None, "of bound: as of statejump bounds")
+    output: str | None = text(None, "of bound and linear_bound: as of statejump bounds")
 
 
 @definition

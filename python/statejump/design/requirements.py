@@ -10,7 +10,7 @@ import numpy as np
 
 from statejump.control.capabilities import RestBounds, VibrationModes
 from statejump.core.errors import NotAllowed, StatejumpError
-from statejump.design.file import BOUND, FREQUENCY, JUMP, MASS, OF_PATH, RMS, TILT, DesignRequirement
+from statejump.design.file import BOUND, FREQUENCY, JUMP, LINEAR_BOUND, MASS, OF_PATH, RMS, TILT, DesignRequirement
 from statejump.design.model import Model, Setting
 from statejump.kinds import require
 from statejump.kinds.truss.answers import reflector
@@ -23,7 +23,8 @@ from statejump.kinds.truss.solve import TrussPath
 from statejump.schema.paths import meant
 
 UNITS = {JUMP: "m", TILT: "rad", RMS: "m", MASS: "kg", FREQUENCY: "Hz"}
-OF_GRID = (*OF_PATH, BOUND)  # quantities that depend on friction and clearances
+BOUNDS = (BOUND, LINEAR_BOUND)
+OF_GRID = (*OF_PATH, *BOUNDS)  # quantities that depend on friction and clearances
 
 
 def total_mass_kg(truss: ResolvedTruss) -> float:
@@ -66,6 +67,8 @@ class Requirement:
             return np.array([require(found, VibrationModes).modes(found, 1).frequency_Hz[0]])
         bound = require(found, RestBounds).bounds(found, [self.output], simulate=False).record()["bounds"][0]
         jump, margin = bound[f"jump_{self.unit}"], bound[f"margin_{self.unit}"]
+        if jump is not None and self.quantity == LINEAR_BOUND:
+            return np.array([jump])
         if jump is None or margin is None:
             raise StatejumpError(code="design_no_guarantee", place=found.name, case=found.name, output=self.output)
         return np.array([jump + margin])
@@ -112,7 +115,7 @@ def _requirement(case: TrussCase, wanted: DesignRequirement) -> Requirement:
     if not np.isfinite(limit):
         raise NotAllowed("at_most", limit, code="not_finite")
     most = wanted.at_most is not None
-    if (wanted.output is None) == (quantity == BOUND):
+    if (wanted.output is None) == (quantity in BOUNDS):
         raise NotAllowed("output", wanted.output, code="design_output_of_bound")
     if quantity in OF_PATH and not case.has_jump:
         raise NotAllowed("quantity", quantity, code="design_without_jump")
@@ -129,7 +132,7 @@ def _requirement(case: TrussCase, wanted: DesignRequirement) -> Requirement:
         if surface is None:
             raise NotAllowed("quantity", quantity, code="no_fit")
         return Requirement(wanted.name, quantity, limit, most, UNITS[quantity], ("surface",), surface=surface)
-    if quantity == BOUND:
+    if quantity in BOUNDS:
         output = str(wanted.output)
         unit = "rad" if output == "tilt" or output.startswith("point") else "m"
         made = Requirement(wanted.name, quantity, limit, most, unit, (output,), output=output)

@@ -41,7 +41,8 @@ def _slsqp(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -
     constraint = {"type": "ineq", "fun": problem.margins, "jac": problem.margin_gradients}
     found = libraries.scipy("optimize").minimize(
         lambda at: problem.cost(at) / problem.scale, x, jac=lambda at: problem.cost_gradient(at) / problem.scale,
-        bounds=problem.bounds, constraints=[constraint], method="SLSQP", options={"maxiter": iterations, "ftol": tolerance})
+        bounds=problem.bounds, constraints=[constraint], method="SLSQP",
+        options={"maxiter": iterations, "ftol": tolerance})
     return str(found.message)
 
 
@@ -52,7 +53,8 @@ def _trust(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -
     found = optimize.minimize(
         lambda at: problem.cost(at) / problem.scale, x,
         jac=lambda at: problem.cost_gradient(at) / problem.scale,
-        hess=optimize.BFGS(), constraints=[constraint], bounds=optimize.Bounds(*np.transpose(problem.bounds), keep_feasible=False), method="trust-constr",
+        hess=optimize.BFGS(), constraints=[constraint],
+        bounds=optimize.Bounds(*np.transpose(problem.bounds), keep_feasible=False), method="trust-constr",
         options={"maxiter": iterations, "gtol": tolerance, "xtol": tolerance, "initial_tr_radius": FIRST})
     return str(found.message)
 

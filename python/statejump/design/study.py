@@ -15,10 +15,10 @@ from statejump.core.errors import Interrupted, MissingKey, NotAllowed, Statejump
 from statejump.core.progress import OnProgress
 from statejump.design import checks
 from statejump.design.cost import Formula
-from statejump.design.file import COBYLA, NLOPT, DesignFile
+from statejump.design.file import COBYLA, NLOPT, OF_PATH, DesignFile
 from statejump.design.model import NOMINAL, Model, Setting
 from statejump.design.problem import Best, Problem
-from statejump.design.requirements import OF_GRID, Requirement, at_setting, requirements_of
+from statejump.design.requirements import Requirement, at_setting, requirements_of
 from statejump.design.result import Design, Stage
 from statejump.design.search import search, short_steps
 from statejump.design.variables import groups_of
@@ -95,8 +95,8 @@ def _stages(settings: DesignFile, grid: Sequence[Setting]) -> list[tuple[str, li
     rising = [Setting(one.friction) for one in grid if one.friction <= 1]
     rising = list(dict.fromkeys([*rising, NOMINAL]))
     whole = ("whole grid", list(grid))
-    of_grid = any(one.quantity in OF_GRID for one in settings.requirement)
-    if settings.design.method == COBYLA or not of_grid or set(grid) <= set(rising):
+    of_path = any(one.quantity in OF_PATH for one in settings.requirement)
+    if settings.design.method == COBYLA or not of_path or set(grid) <= set(rising):
         return [whole]
     return [("friction up to that of the case", rising), whole]
 
