@@ -16,12 +16,13 @@ commands of ``statejump truss``.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 from statejump.core.case import Case, Progress
-from statejump.control.capabilities import ControlStudy, Creaking, DesignAnswers
+from statejump.control.capabilities import ControlStudy, Creaking, DesignAnswers, TrussDesign
 from statejump.control.study import DesignChoices, Study
 from statejump.core.errors import Range
 from statejump.core.progress import shown
@@ -37,10 +38,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from statejump.design.result import Design
     from statejump.kinds.truss.answers.study import TrussAnswers
     from statejump.kinds.truss.creak import Creak
 
-__all__ = ["answers", "chain", "control", "creak", "draw", "iwan", "mast", "ring", "umbrella"]
+__all__ = ["answers", "chain", "control", "creak", "design", "draw", "iwan", "mast", "ring", "umbrella"]
 
 Keys = ParamSpec("Keys")
 LARGEST = 1_000_000
@@ -144,6 +146,22 @@ def control(
     with shown(progress, "control") as on_progress:
         found = kind.control(case, jump_below=jump_below, on_progress=on_progress,
                              choices=DesignChoices(node, add_spring, scale))
+    return found
+
+
+def design(case: Case, wanted: str | Path | Mapping[str, Any], *, progress: Progress = False) -> Design:
+    """Return the design of least cost that meets requirements over a grid of friction and clearances.
+
+    :param case: a case of kind ``truss``
+    :param wanted: path of a design file, or its sections as a dict
+    :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
+    :return: ``case`` is the designed case, ``verdict`` and ``sentences`` state the result as text, ``record()`` as
+        numbers
+    :raises StatejumpError: the case is of another kind, or the design file is invalid for it
+    """
+    kind = require(case, TrussDesign)
+    with shown(progress, "design") as on_progress:
+        found: Design = kind.design(case, wanted, on_progress)
     return found
 
 

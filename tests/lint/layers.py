@@ -36,16 +36,16 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "statejump.kinds.truss.answers.jumps", "statejump.kinds.truss.answers.reflector",  # outcomes need them
     )),
     ("results", ("statejump.results",)),
-    ("campaigns", ("statejump.campaign", "statejump.schema.json_schema")),
+    ("campaigns", ("statejump.campaign", "statejump.design.file", "statejump.schema.json_schema")),
     ("design", (
-        "statejump.bores", "statejump.control", "statejump.identification", "statejump.orbit",
+        "statejump.bores", "statejump.control", "statejump.design", "statejump.identification", "statejump.orbit",
         "statejump.kinds.spring_slider.control", "statejump.kinds.truss.answers", "statejump.kinds.truss.control",
         "statejump.kinds.umbrella.quasi_static",
     )),
     ("present", (
         "statejump.core.figures", "statejump.core.html", "statejump.report",
         "statejump.bodies.figure", "statejump.bodies.page", "statejump.bores.picture", "statejump.campaign.plots",
-        "statejump.control.plot",
+        "statejump.control.plot", "statejump.design.page",
         "statejump.identification.picture", "statejump.laws.curves",
         "statejump.kinds.spring_slider.figure",
         "statejump.kinds.statics.figure", "statejump.kinds.statics.files",

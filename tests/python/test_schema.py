@@ -22,7 +22,7 @@ from test_bad_input import MISTAKES as SPRING_SLIDER_MISTAKES
 
 PUBLISHED = REPOSITORY / "schema"
 FILES = sorted((REPOSITORY / "cases").rglob("*.toml"))
-CAMPAIGNS = ("montecarlo", "sweep")
+CAMPAIGNS = ("montecarlo", "sweep", "design")  # files that are no cases
 
 
 def published(name: str) -> dict[str, Any]:
@@ -30,6 +30,8 @@ def published(name: str) -> dict[str, Any]:
 
 
 def name_of(data: dict[str, Any]) -> str:
+    if "variable" in data:
+        return "design"
     if "campaign" in data:
         return "montecarlo" if "samples" in data["campaign"] else "sweep"
     return data["case"]["kind"]

@@ -31,6 +31,7 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "compare": ("models:compare_command",
                     "Both models of CASE side by side, or two result files of the same case."),
         "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
+        "design": ("design:design_command", "Variables of least cost with which CASE meets requirements."),
         "bounds": ("bounds:bounds_command", "How far CASE can come back, whatever the temperature history."),
         "worst": ("worst:worst_command", "Temperature histories with the largest state jump and peak of a truss."),
         "modes": ("modes:modes_command", "Natural frequencies and mode shapes of a truss."),

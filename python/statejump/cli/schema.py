@@ -17,7 +17,7 @@ from statejump.schema.json_schema import ANY, schema, to_json, write_all
               help="Write every schema into a folder.")
 def schema_command(kind: str, output: Path | None, folder: Path | None) -> None:
     """JSON Schema of case files of KIND, or of campaigns: case (every kind), spring_slider, umbrella,
-    statics, truss, montecarlo, sweep.
+    statics, truss, montecarlo, sweep; or of design files: design.
 
     \b
     Examples:

@@ -2,7 +2,7 @@
 """Capabilities of kinds for design questions; see :mod:`statejump.kinds.protocol`."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -74,6 +74,13 @@ class WorstCases(Protocol):
     """Search for worst temperature histories; see :func:`statejump.kinds.truss.worst.study.worst`."""
 
     def worst(self, case: Any, range_K: str | tuple[float, float], **settings: Any) -> Any: ...
+
+
+@capability("design")
+class TrussDesign(Protocol):
+    """Design of least cost under requirements; see :func:`statejump.design.study.design`."""
+
+    def design(self, case: Any, wanted: str | Path | Mapping[str, Any], on_progress: OnProgress) -> Any: ...
 
 
 @capability("truss creak")

@@ -388,6 +388,25 @@ CODES: dict[str, Code] = {
     "campaign_without_vary": Code(cause="at least one table says what varies"),
     "sweep_with_distribution": Code(beside="in a sweep", cause="only 'statejump montecarlo' draws samples"),
     # Rare events
+    "nlopt_missing": Code(
+        what="the package nlopt is missing", remedy="install it with 'apt install python3-nlopt', or use another method"),
+    "design_axis_and_position": Code(cause="an axis belongs to node.*.position_m, and to no other key"),
+    "design_axis_of_plane": Code(cause="the positions of this truss have two components"),
+    "design_bad_formula": Code(
+        cause="{reason}", remedy="use numbers, + - * / **, sum(), sqrt(), exp(), log() and the names {names}"),
+    "design_bad_grid": Code(cause="must be a list of numbers above 0"),
+    "design_interrupted": Code(what="interrupted; the best design so far is in {path}"),
+    "design_key_twice": Code(cause="variable {other!r} changes this number too"),
+    "design_log_not_positive": Code(cause="a factor on a log scale must be above 0", remedy="set scale = 'linear'"),
+    "design_no_guarantee": Code(
+        what="the bound of {output} is not guaranteed, its margin is not derived",
+        remedy="see 'statejump bounds' for the reason, or use the quantity 'linear_bound'"),
+    "design_no_keys": Code(cause="must name at least one key"),
+    "design_no_node": Code(cause="no node that moves has such a name"),
+    "design_no_value": Code(cause="the case has no value other than 0 that a factor could change"),
+    "design_output_of_bound": Code(cause="an output belongs to bounds, and to no other quantity"),
+    "design_too_many": Code(cause="{count} variables are more than the {most} allowed"),
+    "design_without_jump": Code(cause="the program does not return to its initial temperature"),
     "openturns_missing": Code(
         what="OpenTURNS", cause="the library is not installed", remedy="install the package python3-openturns",
     ),

@@ -38,6 +38,14 @@ def scipy(part: str) -> Any:
     return import_module(f"scipy.{part}")  # 0.1 s
 
 
+def nlopt() -> Any:
+    """Return NLopt, for searches of designs. :raises StatejumpError: it is not installed"""
+    try:
+        return import_module("nlopt")
+    except ImportError:
+        raise StatejumpError(code="nlopt_missing") from None
+
+
 def openturns() -> Any:
     """Return OpenTURNS, for rare events. :raises StatejumpError: it is not installed"""
     try:

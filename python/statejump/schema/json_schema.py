@@ -17,6 +17,7 @@ from typing import Any
 
 from statejump import _paths, kinds
 from statejump.campaign.campaign_file import FILES
+from statejump.design.file import DesignFile
 from statejump.core.errors import Range
 from statejump.core.output import write_atomically
 from statejump.kinds.protocol import Kind
@@ -28,6 +29,7 @@ from statejump.schema.rules import ATTACHED, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 ANY = "case"
+DESIGN = "design"
 Schema = dict[str, Any]
 
 
@@ -194,8 +196,8 @@ def _any_case(known: list[str], alone: bool) -> Schema:
 
 
 def names() -> list[str]:
-    """Return the names of all schemas: ``case``, the kinds of cases and the kinds of campaigns."""
-    return [ANY, *kinds.names(), *FILES]
+    """Return the names of all schemas: ``case``, the kinds of cases, the kinds of campaigns, and ``design``."""
+    return [ANY, *kinds.names(), *FILES, DESIGN]
 
 
 def schema(name: str = ANY, alone: bool = True) -> Schema:
@@ -210,6 +212,8 @@ def schema(name: str = ANY, alone: bool = True) -> Schema:
         found = _any_case(kinds.names(), alone)
     elif name in FILES:
         found = _file(FILES[name], f"statejump {name} campaign")
+    elif name == DESIGN:
+        found = _file(DesignFile, "statejump design file")
     else:
         found = _kind(kinds.kind(name))
     return {"$schema": DRAFT, **found}

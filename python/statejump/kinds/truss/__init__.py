@@ -62,6 +62,7 @@ class Truss(Kind[TrussCase]):
     bounds = Later("statejump.kinds.truss.bounds.study:bounds")
     worst = Later("statejump.kinds.truss.worst.study:worst")
     modes = Later("statejump.kinds.truss.modes:modes")
+    design = Later("statejump.design.study:design")
     control = Later("statejump.kinds.truss.control.study:control")
     answers = Later("statejump.kinds.truss.answers.study:answer")
     sheet = Later("statejump.kinds.truss.figure:sheet")
