@@ -11,7 +11,8 @@ from statejump.core.case import Case
 from statejump.design.variables import Group, Target
 from statejump.kinds.loading import parse_case
 from statejump.kinds.truss.answers.jumps import quick_path
-from statejump.kinds.truss.answers.sensitivity import changed, parameters
+from statejump.kinds.truss.answers.gradient import RecordedPath
+from statejump.kinds.truss.answers.parameters import changed, parameters
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
@@ -45,12 +46,14 @@ class Model:
 
     :param arrays: whether values can be set in the arrays of the truss, without making a case
     :param paths: number of paths that were solved
+    :param solutions: number of linear systems solved for exact derivatives
     """
 
     base: TrussCase
     groups: Sequence[Group]
     arrays: bool = False
     paths: int = 0
+    solutions: int = 0
     truss: ResolvedTruss = field(init=False)
     numbers: dict[tuple[str, str], np.ndarray] = field(init=False)
     places: dict[str, dict[str, int]] = field(init=False)
@@ -71,10 +74,16 @@ class Model:
         :param more: further values by ``section.item.key``
         """
         self.paths += 1
-        truss = self._truss(x, setting, more) if self.arrays else self.case(x, setting, more=more).resolve()
+        truss = self.truss_at(x, setting, more) if self.arrays else self.case(x, setting, more=more).resolve()
         return quick_path(truss, self.base.reduced_settings.increments_per_branch, cycle_ends_only=True)
 
-    def _truss(self, x: np.ndarray, setting: Setting, more: Iterable[tuple[str, float]]) -> ResolvedTruss:
+    def recorded(self, x: np.ndarray, setting: Setting) -> RecordedPath:
+        """Solve the path at a point, for exact derivatives. :raises StatejumpError: the truss has no path"""
+        self.paths += 1
+        return RecordedPath(self.truss_at(x, setting, ()), self.base.reduced_settings.increments_per_branch)
+
+    def truss_at(self, x: np.ndarray, setting: Setting, more: Iterable[tuple[str, float]]) -> ResolvedTruss:
+        """Return the truss at a point. :raises KeyError: ``arrays`` is false"""
         factors = {key: np.full(len(values), setting.of(key[1])) for key, values in self.numbers.items()
                    if setting.of(key[1]) != 1.0}
         pairs = [(target.path, value / target.value) for group, one in zip(self.groups, x)

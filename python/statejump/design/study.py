@@ -110,7 +110,7 @@ def _designed(settings: DesignFile, model: Model, requirements: list[Requirement
         problem = Problem(model, formula, requirements, points, given.step,
                           lambda share, done=number: on_progress(  # type: ignore[misc]
                               SEARCHES * (done + share) / len(wanted)), given.iterations)
-        paths = model.paths
+        paths, solutions = model.paths, model.solutions
         try:
             last = number + 1 == len(wanted)
             tolerance = given.tolerance if last else max(given.tolerance, COARSE)
@@ -120,7 +120,8 @@ def _designed(settings: DesignFile, model: Model, requirements: list[Requirement
                 message = short_steps(problem, given.method, x, tolerance)
         except (KeyboardInterrupt, Interrupted):
             interrupted, message = True, "interrupted"
-        stages.append(Stage(name, problem.best.cost, model.paths - paths, problem.derivatives, message))
+        stages.append(Stage(name, problem.best.cost, model.paths - paths, problem.derivatives,
+                            model.solutions - solutions, message))
         x = problem.best.x if interrupted or problem.best.margin >= 0 or number + 1 == len(wanted) else start
         if interrupted:
             break

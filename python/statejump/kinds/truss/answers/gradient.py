@@ -19,6 +19,7 @@ from statejump import _engine
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.answers.parameters import changed, parameters, part_of
+from statejump.kinds.truss.body_points import displacements_m, point_names
 from statejump.kinds.truss.check_mechanism import check_at_rest
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -145,26 +146,38 @@ def _with_value(truss: ResolvedTruss, section: str, key: str) -> np.ndarray:
 
 
 def _covectors(found: TrussPath, output: Output) -> np.ndarray:
-    """Return the derivative of the jump of an output by the displacements at the ends of cycles (ends, nodes, 3)."""
-    ends = found.cycle_ends["displacement_m"]
-    made = np.zeros_like(ends)
-    for end, sign in ((0, -1.0), (len(ends) - 1, 1.0)):
-        made[end] += sign * _by_displacements(output.value, ends[end], float(np.abs(ends).max()))
-    return made
+    """Return the derivative of the jump of an output by displacements of nodes and, with points of bodies, by their
+    rotations, at the ends of cycles (ends, sites, 3)."""
+    ends = found.cycle_ends
+    states = [ends["displacement_m"]]
+    if point_names(found.truss):
+        states.append(ends["rotation_rad"])
+    count = states[0].shape[1]
+    moved = np.concatenate(states, axis=1)
 
+    def value(sites: np.ndarray) -> float:
+        state = {"displacement_m": sites[None, :count], "rotation_rad": sites[None, count:], "time_s": ends["time_s"][:1]}
+        return output.value(displacements_m(found.truss, state)[0])
 
-def _by_displacements(value: Callable[[np.ndarray], float], moved: np.ndarray, size: float) -> np.ndarray:
-    """Return the derivative (nodes, 3) of a function of displacements (nodes, 3). Outputs are linear in them, or
-    quadratic over the size of the truss, so one central difference is exact to rounding."""
-    step = size if size > 0 else 1.0
     made = np.zeros_like(moved)
-    for place in np.ndindex(*moved.shape):
-        other = moved.copy()
-        other[place] += step
-        plus = value(other)
-        other[place] = moved[place] - step
-        made[place] = (plus - value(other)) / (2 * step)
+    steps = [np.abs(one).max(initial=0.0) for one in states]
+    for end, sign in ((0, -1.0), (len(moved) - 1, 1.0)):
+        for place in np.ndindex(*moved.shape[1:]):
+            # Temperatures are those of the reference at both ends.
+            made[(end, *place)] += sign * _difference(value, moved[end], place, steps[place[0] // count])
     return made
+
+
+def _difference(value: Callable[[np.ndarray], float], moved: np.ndarray, place: tuple[int, ...], size: float) -> float:
+    """Return the derivative of a function of displacements by one of them. Outputs are linear in displacements, to the
+    order of displacements over the size of the truss, so one central difference is exact to the square of a tenth of
+    that."""
+    step = 0.1 * size if size > 0 else 1e-6
+    other = moved.copy()
+    other[place] += step
+    plus = value(other)
+    other[place] = moved[place] - step
+    return (plus - value(other)) / (2 * step)
 
 
 def _extrapolated(function: Callable[[float], np.ndarray], accuracy: float = EXACT
