@@ -156,11 +156,12 @@ class Design:
         met = [(row["requirement"], row["limit"], row["critical"], row["at"], text(row["before"], row["unit"], 4),
                 text(row["after"], row["unit"], 4), f"{100 * row['margin']:.3g}") for row in self.met()]
         heads = ("requirement", "limit", "critical", "at", "before", "after", "margin [%]")
-        stages = [(stage.name, f"{stage.cost:.6g}", str(stage.paths), str(stage.gradients), str(stage.solutions), stage.message)
-                  for stage in self.stages]
+        stages = [(stage.name, f"{stage.cost:.6g}", str(stage.paths), str(stage.gradients), str(stage.solutions),
+                   stage.message) for stage in self.stages]
+        title = f"searches, {self.method}; exact derivatives of jumps, else differences with a step of {self.step:g}"
         return [*lines, Shown("requirements", heads, met, left=heads[:4]),
-                Shown(f"searches, {self.method}; derivatives of jumps are exact, others differences with a step of {self.step:g}",
-                      ("search", "cost", "paths", "gradients", "adjoint solutions", "end"), stages, left=("search", "end")),
+                Shown(title, ("search", "cost", "paths", "gradients", "adjoint solutions", "end"), stages,
+                      left=("search", "end")),
                 *self.sentences]
 
     def record(self) -> dict[str, Any]:

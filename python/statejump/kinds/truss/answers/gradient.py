@@ -156,7 +156,8 @@ def _covectors(found: TrussPath, output: Output) -> np.ndarray:
     moved = np.concatenate(states, axis=1)
 
     def value(sites: np.ndarray) -> float:
-        state = {"displacement_m": sites[None, :count], "rotation_rad": sites[None, count:], "time_s": ends["time_s"][:1]}
+        state = {"displacement_m": sites[None, :count], "rotation_rad": sites[None, count:],
+                 "time_s": ends["time_s"][:1]}
         return output.value(displacements_m(found.truss, state)[0])
 
     made = np.zeros_like(moved)
