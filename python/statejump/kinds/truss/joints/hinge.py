@@ -52,7 +52,7 @@ class Hinges:
 
 
 class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
-    """Hinges of beams, supported by the quasi-static solver."""
+    """Hinges of beams, supported by the quasi-static solver and in motion."""
 
     section = "hinge"
     noun = "hinge"

@@ -51,7 +51,7 @@ class Pads:
 
 
 class PadType(JointType[Pad, Pads]):
-    """Pads, supported by the quasi-static solver."""
+    """Pads, supported by the quasi-static solver and in motion."""
 
     section = "pad"
     Item = Pad

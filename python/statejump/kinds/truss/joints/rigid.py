@@ -42,7 +42,7 @@ class Rigids:
 
 
 class RigidType(JointType[Rigid, Rigids]):
-    """Rigid bodies, supported by the quasi-static solver."""
+    """Rigid bodies, supported by the quasi-static solver and in motion."""
 
     section = "rigid"
     bends = True
