@@ -190,8 +190,15 @@ def path(
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure) from None
+    check_states(truss, found["states"])
     events = TrussEvents(truss, **found.pop("events"))
     return TrussPath(truss=truss, events=events, **found)
+
+
+def check_states(truss: ResolvedTruss, states: Mapping[str, np.ndarray]) -> None:
+    """Raise an error if a joint leaves the range of its law in a state."""
+    for joint in JOINTS:
+        joint.check_states(truss, truss.joints[joint.section], states)
 
 
 def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: None, **options: Any) -> TrussPath:
