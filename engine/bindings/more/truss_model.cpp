@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <map>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -125,6 +126,19 @@ std::vector<Type> items_of(const Table& table) {
   return items;
 }
 
+/// Sets the moment curves of hinges; hinges with an empty table have none.
+void set_curves(const py::dict& arrays, std::vector<truss::Hinge>& hinges) {
+  using Lists = std::vector<std::vector<double>>;
+  const auto angle = arrays["table_angle_rad"].cast<Lists>();
+  const auto moment = arrays["table_moment_N_m"].cast<Lists>();
+  const auto slope = arrays["table_slope_N_m_per_rad"].cast<Lists>();
+  for (std::size_t i = 0; i < hinges.size(); ++i) {
+    if (angle.at(i).empty()) continue;
+    hinges[i].curve =
+        std::make_shared<const truss::MomentCurve>(angle[i], moment.at(i), slope.at(i));
+  }
+}
+
 /// Condensed bodies: of each its nodes and matrices.
 std::vector<truss::CondensedBody> bodies_of(const py::dict& arrays) {
   const auto names = arrays["names"].cast<std::vector<std::string>>();
@@ -218,9 +232,12 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
   });
   truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
     if (joints_.contains(Type::kind)) {
-      const Table table(Type::kind, joints_[Type::kind].template cast<py::dict>());
+      const auto arrays = joints_[Type::kind].template cast<py::dict>();
+      const Table table(Type::kind, arrays);
       model.joints.reserve(model.joints.size() + table.size());
-      for (Type& joint : items_of<Type>(table)) model.joints.emplace_back(std::move(joint));
+      std::vector<Type> items = items_of<Type>(table);
+      if constexpr (std::is_same_v<Type, truss::Hinge>) set_curves(arrays, items);
+      for (Type& joint : items) model.joints.emplace_back(std::move(joint));
     }
   });
   model.constraints = constraints_of(constraints_);

@@ -32,8 +32,12 @@ constexpr int most_slower = 16;
 /// Most joints that a snap note names.
 constexpr std::size_t most_named = 3;
 
-/// Diameter of a joint's play [m]; 0: it has none.
-double play_of(const Joint& joint) {
+/// Diameter of a joint's play [m], or the range of a hinge's moment curve on its radius; 0: it has
+/// none.
+double play_of(const Model& model, const Joint& joint) {
+  if (const auto* hinge = std::get_if<Hinge>(&joint)) {
+    return hinge->curve ? model.nodes[index(hinge->first)].arm * hinge->curve->range() : 0.0;
+  }
   return std::visit(
       [](const auto& one) {
         if constexpr (requires { one.radial_clearance; }) return 2.0 * one.radial_clearance;
@@ -42,17 +46,17 @@ double play_of(const Joint& joint) {
       joint);
 }
 
-/// Sum of the diameters of all plays [m].
+/// Sum of all plays [m].
 double sum_of_plays(const Model& model) {
   double sum = 0.0;
-  for (const Joint& joint : model.joints) sum += play_of(joint);
+  for (const Joint& joint : model.joints) sum += play_of(model, joint);
   return sum;
 }
 
-/// The largest diameter of a play [m].
+/// The largest play [m].
 double largest_play(const Model& model) {
   double largest = 0.0;
-  for (const Joint& joint : model.joints) largest = std::max(largest, play_of(joint));
+  for (const Joint& joint : model.joints) largest = std::max(largest, play_of(model, joint));
   return largest;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "statejump/truss/joints/hinge_law.hpp"
+#include "statejump/truss/joints/moment_curve.hpp"
 #include "truss/joints/writer.hpp"
 
 namespace statejump::truss {
@@ -46,6 +47,18 @@ double HingeLaw<Type>::beyond_play(double rotation) const {
 }
 
 template <class Type>
+double HingeLaw<Type>::slack(const Trial& trial) const {
+  if (type().moment_curve() == nullptr || !trial.damps_contact) return 0.0;
+  return trial.slack_stiffness * std::pow(type().radius(trial), 2);
+}
+
+template <class Type>
+Eigen::Vector3d HingeLaw<Type>::slack_motion(const Trial& trial) const {
+  if (type().moment_curve() == nullptr) return Eigen::Vector3d::Zero();
+  return type().radius(trial) * (type().rotation(trial) - trial.history[1]) * axis;
+}
+
+template <class Type>
 typename HingeLaw<Type>::Law HingeLaw<Type>::evaluate_law(const Trial& trial, JointStatus status,
                                                           JointWriter& writer) const {
   const double rotation = type().rotation(trial);
@@ -53,6 +66,11 @@ typename HingeLaw<Type>::Law HingeLaw<Type>::evaluate_law(const Trial& trial, Jo
   const double force = trial.force[0];
   Law law{elastic_moment(rotation) + radius * force,
           std::abs(rotation) < deadband ? 0.0 : stiffness, 0.0, radius};
+  if (const MomentCurve* curve = type().moment_curve()) law.tangent += curve->at(rotation).slope;
+  if (const double held = slack(trial); held > 0.0) {
+    law.moment += held * (rotation - trial.history[1]);
+    law.tangent += held;
+  }
   writer.carries(force);
   writer.carries(law.moment / radius);
   double corner = 0.0;
@@ -95,6 +113,7 @@ JointStatus HingeLaw<Type>::decide(const Trial& trial, JointStatus status) const
 template <class Type>
 void HingeLaw<Type>::begin(const Trial& trial, JointStatus, double* now) const {
   now[0] = slipped(trial);
+  now[1] = type().rotation(trial);
 }
 
 template <class Type>
@@ -119,12 +138,16 @@ double HingeLaw<Type>::elastic_energy(const Trial& trial, const double* now) con
   const double bent = std::isinf(friction_stiffness)
                           ? 0.0
                           : 0.5 * friction_stiffness * std::pow(rotation - now[0], 2);
-  return 0.5 * stiffness * beyond * beyond + preload_moment * rotation + bent;
+  const MomentCurve* curve = type().moment_curve();
+  const double curved = curve != nullptr ? curve->at(rotation).energy : 0.0;
+  return 0.5 * stiffness * beyond * beyond + preload_moment * rotation + curved + bent;
 }
 
 template <class Type>
 double HingeLaw<Type>::elastic_moment(double rotation) const {
-  return preload_moment + stiffness * beyond_play(rotation);
+  const MomentCurve* curve = type().moment_curve();
+  const double curved = curve != nullptr ? curve->at(rotation).moment : 0.0;
+  return preload_moment + stiffness * beyond_play(rotation) + curved;
 }
 
 template <class Type>

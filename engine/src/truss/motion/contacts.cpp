@@ -156,6 +156,7 @@ void Contacts::add_hinge(int joint, int first_column, const HingeLaw<Type>& hing
 
 void Contacts::add(int joint, int first_column, const Hinge& hinge) {
   const Model& model = system_->model();
+  springs_ = springs_ || hinge.curve;
   add_hinge(joint, first_column, hinge, model.nodes[index(hinge.first)].arm);
   for (int k = 1; k < hinge.frame(model).forces; ++k) turning_holds_.push_back(first_column + k);
 }

@@ -22,7 +22,7 @@ from statejump.kinds.truss.masses import (
     beam_mass_kg, beam_moment_kg_m2, condensed_mass_kg, lumped_mass_kg, require_masses,
 )
 from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import TrussEvents, engine_items
+from statejump.kinds.truss.solve import TrussEvents, check_states, engine_items
 
 
 @dataclass(frozen=True)
@@ -175,6 +175,7 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
     events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
         raise Interrupted(code="interrupted_before_sample")
+    check_states(truss, found["states"])
     made = TrussMotion(truss=truss, events=events, regularised=regularised,
                        equal=case.motion.displacement_tolerance_m is None, **found)
     if not made.complete:

@@ -194,6 +194,7 @@ def path(
 
 def path_from(truss: ResolvedTruss, found: dict[str, Any]) -> TrussPath:
     """Return a path that the engine returned."""
+    check_states(truss, found["states"])
     events = TrussEvents(truss, **found.pop("events"))
     return TrussPath(truss=truss, events=events, **found)
 
@@ -205,6 +206,12 @@ def failing(truss: ResolvedTruss) -> Iterator[None]:
         yield
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure) from None
+
+
+def check_states(truss: ResolvedTruss, states: Mapping[str, np.ndarray]) -> None:
+    """Raise an error if a joint leaves the range of its law in a state."""
+    for joint in JOINTS:
+        joint.check_states(truss, truss.joints[joint.section], states)
 
 
 def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: None, **options: Any) -> TrussPath:

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "statejump/truss/joints/hinge_law.hpp"
+#include "statejump/truss/joints/moment_curve.hpp"
 
 namespace statejump::truss {
 
@@ -23,8 +25,9 @@ struct Constraint;
 /// missing.
 struct Hinge : HingeLaw<Hinge> {
   std::string name;
-  int first = 0;   ///< Node.
-  int second = 0;  ///< Node.
+  int first = 0;                                  ///< Node.
+  int second = 0;                                 ///< Node.
+  std::shared_ptr<const MomentCurve> curve = {};  ///< Null: none.
 
   static constexpr const char* kind = "hinge";
   static std::span<const Parameter<Hinge>> parameters();
@@ -37,6 +40,7 @@ struct Hinge : HingeLaw<Hinge> {
   double rotation(const Trial& trial) const;
   double radius(const Trial& trial) const;
   double turning_ratio(const Trial& trial) const;
+  const MomentCurve* moment_curve() const { return curve.get(); }
 };
 
 }  // namespace statejump::truss

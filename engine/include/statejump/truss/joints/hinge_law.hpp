@@ -7,24 +7,27 @@
 
 namespace statejump::truss {
 
+class MomentCurve;
+
 /// Law of a joint that rotates about an axis, with play, stiffness, dry friction, and a preload
 /// moment.
 ///
 /// **Law.** The moment that resists the rotation φ from the reference configuration is
 ///
-///   M = M0 + K (φ − clamp(φ; −a, a)) + M_f
+///   M = M0 + K (φ − clamp(φ; −a, a)) + M_t(φ) + M_f
 ///
-/// with friction M_f a subgradient of M_c |φ − φ_k|:
+/// with a moment curve M_t, if there is one, and friction M_f a subgradient of M_c |φ − φ_k|:
 ///
 ///   stick   φ = φ_k, |M_f| <= M_c      slip±   M_f = ±M_c, ±(φ − φ_k) >= 0
 ///
 /// With a finite stiffness k_f, sticking friction acts as a spring, M_f = k_f (φ − p), and slip
-/// changes the stored rotation p. Play and stiffness have a potential and no memory, so only
+/// changes the stored rotation p. Play, stiffness and curve have a potential and no memory, so only
 /// friction has statuses. The first unknown is M_f divided by a radius. Its row is a slide on that
 /// radius.
 ///
-/// `Type` derives from HingeLaw<Type> and has rotation(trial) [rad], radius(trial) [m], and
-/// turning_ratio(trial), the radius over the smallest lever of its nodes, at least 1.
+/// `Type` derives from HingeLaw<Type> and has rotation(trial) [rad], radius(trial) [m],
+/// turning_ratio(trial), the radius over the smallest lever of its nodes, at least 1, and
+/// moment_curve(), which is null without a curve.
 template <class Type>
 struct HingeLaw : PlainJoint {
   double deadband = 0.0;         ///< a [rad], >= 0: free play to either side.
@@ -35,7 +38,7 @@ struct HingeLaw : PlainJoint {
   double preload_moment = 0.0;  ///< M0 against the rotation [N m].
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
 
-  static constexpr int history() { return 1; }
+  static constexpr int history() { return 2; }
   static constexpr int slide_row = 0;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
@@ -43,8 +46,10 @@ struct HingeLaw : PlainJoint {
   double slip(const Trial& trial, const double* after) const;
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
-  /// Moment of preload and stiffness at a rotation [N m].
+  /// Moment of preload, stiffness and curve at a rotation [N m].
   double elastic_moment(double rotation) const;
+  /// Rotation of a hinge with a moment curve since the start of the step, on its radius [m].
+  Eigen::Vector3d slack_motion(const Trial& trial) const;
   std::array<double, 2> beyond_edges(const Trial& trial) const;
   /// Outputs: rotation from the reference configuration; moment against it (preload, stiffness and
   /// friction).
@@ -70,6 +75,8 @@ struct HingeLaw : PlainJoint {
   double slipped(const Trial& trial) const;
   /// Rotation beyond the play [rad].
   double beyond_play(double rotation) const;
+  /// Stiffness of the dashpot on the rotation of a hinge that snaps [N m/rad].
+  double slack(const Trial& trial) const;
 };
 
 }  // namespace statejump::truss

@@ -26,6 +26,7 @@ struct LatchHinge : HingeLaw<LatchHinge> {
   double rotation(const Trial& trial) const;
   double radius(const Trial& trial) const;
   double turning_ratio(const Trial& trial) const;
+  static const MomentCurve* moment_curve() { return nullptr; }
 };
 
 }  // namespace statejump::truss

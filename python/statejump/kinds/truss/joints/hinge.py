@@ -9,10 +9,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import distances
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
+from statejump.kinds.truss.arrays import References, distances
+from statejump.kinds.truss.joints import moment_table
 from statejump.kinds.truss.joints.hinge_law import MOMENT, HingeLaw
-from statejump.kinds.truss.joints.protocol import USER, AboutAxis, ItemColumn, Loads, Symbol
+from statejump.kinds.truss.joints.protocol import USER, AboutAxis, ItemColumn, Loads, Symbol, count
 from statejump.kinds.truss.references import Around, known_nodes, wrong_ends
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import definition, numbers, parameter, texts
@@ -25,7 +26,8 @@ class Hinge(Item):
     """A hinge between two nodes at one position, where beams or rigid bodies end. Its axis rotates with the first node.
 
     The moment against the rotation of the second node relative to the first is preload + stiffness (rotation beyond
-    the play) ± friction. The rotation is zero in the reference configuration."""
+    the play) + moment of the table ± friction. The rotation is zero in the reference configuration. Between the points
+    of the table the moment is a monotone cubic, so its peaks are points of the table."""
 
     nodes: list[str] = texts(..., "its two nodes, at one position")
     deadband_rad: float = parameter(0.0, "rad", 0, pi, "none; free play to either side")
@@ -34,6 +36,10 @@ class Hinge(Item):
     friction_stiffness_N_m_per_rad: float | None = parameter(
         None, "N m/rad", 0, 1e12, "of friction that sticks; as beyond the play; elastic sticking only", above=True)
     preload_moment_N_m: float = parameter(0.0, "N m", -1e9, 1e9, "against the rotation; none")
+    table_angle_rad: list[float] | None = numbers(
+        None, "rad", -2 * pi, 2 * pi, "increasing rotations of a measured moment curve, around 0; none")
+    table_moment_N_m: list[float] | None = numbers(
+        None, "N m", -1e9, 1e9, "elastic moments at these rotations, for example of a tape spring")
     axis: list[float] | None = numbers(None, "-", -1e9, 1e9, USER + ", as drawn; needed in three dimensions")
 
 
@@ -49,6 +55,9 @@ class Hinges:
     friction_stiffness_N_m_per_rad: np.ndarray  # inf: neither given nor stiff beyond the play
     preload_moment_N_m: np.ndarray
     axis: np.ndarray  # (h, 3) unit; z in planar trusses
+    # Of every hinge the points of its moment curve; empty: none.
+    table_angle_rad: Sequence[np.ndarray]
+    table_moment_N_m: Sequence[np.ndarray]
 
 
 class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
@@ -64,6 +73,45 @@ class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
         ItemColumn("beam_hinge_moment_N_m", MOMENT),
     )
     not_in_dem = "rotates its nodes, the DEM has no rotations of nodes yet"
+
+    def check_vectors(self, item: Hinge, dimension: int) -> None:
+        super().check_vectors(item, dimension)
+        moment_table.check(item.table_angle_rad, item.table_moment_N_m, self.where(item.name))
+
+    def may_be_wrong_vectors(self, items: ItemColumns[Hinge], dimension: int) -> np.ndarray:
+        return super().may_be_wrong_vectors(items, dimension) | moment_table.given(items)
+
+    def derived(self, items: Sequence[Hinge], known: References) -> dict[str, Any]:
+        return {**super().derived(items, known), **moment_table.derived(items)}
+
+    def engine_arrays(self, truss: ResolvedTruss, joints: Hinges) -> dict[str, Any]:
+        angles, moments = joints.table_angle_rad, joints.table_moment_N_m
+        return {**super().engine_arrays(truss, joints), "table_angle_rad": list(angles), "table_moment_N_m": list(moments),
+                "table_slope_N_m_per_rad": [moment_table.slopes(*curve) for curve in zip(angles, moments)]}
+
+    def check_states(self, truss: ResolvedTruss, joints: Hinges, states: Mapping[str, np.ndarray]) -> None:
+        """Refuse states in which a hinge has left its moment curve."""
+        for index, angle in enumerate(joints.table_angle_rad):
+            if not len(angle) or not states:
+                continue
+            rotation = states["beam_hinge_rotation_rad"][:, index]
+            for at in np.flatnonzero((rotation < angle[0]) | (rotation > angle[-1]))[:1]:
+                raise StatejumpError(
+                    code="hinge_left_table", case=truss.name, joint=joints.names[index], rotation_rad=float(rotation[at]),
+                    time_s=float(states["time_s"][at]), first_rad=float(angle[0]), last_rad=float(angle[-1]))
+
+    def friction_N_m(self, joints: Hinges, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        found = super().friction_N_m(joints, state)
+        rotation = state["beam_hinge_rotation_rad"]
+        for index, curve in enumerate(zip(joints.table_angle_rad, joints.table_moment_N_m)):
+            if len(curve[0]):
+                found[..., index] -= moment_table.moment_N_m(*curve, rotation[..., index])
+        return found
+
+    def describe(self, items: Sequence[Hinge]) -> str:
+        curves = sum(item.table_angle_rad is not None for item in items)
+        also = f" {count(curves * [None], 'moment curve')}." if curves else ""
+        return super().describe(items) + also
 
     def check_references(self, item: Hinge, nodes: Mapping[str, Any], links: Mapping[str, Any],
                          rotating: Container[str]) -> None:

@@ -260,6 +260,9 @@ class JointType(PartType[ItemType, ArraysType]):
 
     # ---------------------------------------------------------------- result
 
+    def check_states(self, truss: ResolvedTruss, joints: ArraysType, states: Mapping[str, np.ndarray]) -> None:
+        """Raise an error if a joint leaves the range of its law in a state."""
+
     def contacts(self, run: Sampled, joints: ArraysType) -> Contacts:
         """Return the contacts of its joints."""
         raise NotImplementedError
