@@ -422,9 +422,10 @@ def test_models_without_rotations_refuse_beams() -> None:
     with pytest.raises(StatejumpError) as refused:
         motion.simulate(case.changed({"motion.scheme": "regularised", "motion.masses": "lumped", "reduced.sticking": "elastic"}))
     assert refused.value.code == "beams_not_supported"
+    check_dem(case)
     with pytest.raises(StatejumpError) as refused:
-        check_dem(case)
-    assert refused.value.code == "dem_element"
+        check_dem(sj.load(REPOSITORY / "cases" / "trusses" / "hinge_line.toml"))
+    assert refused.value.code == "dem_joint"
     for study in (sj.truss.answers, sj.truss.control):
         with pytest.raises(StatejumpError) as refused:
             study(case)
