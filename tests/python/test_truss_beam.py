@@ -446,11 +446,14 @@ def test_boom_has_a_page_and_tables(statejump: Callable[..., Outcome]) -> None:
         assert done.status == 0, done.errors
 
 
-@pytest.mark.parametrize("command", [["dem"], ["compare"], ["truss", "answers"], ["control"]])
-def test_commands_without_beams_refuse_them(statejump: Callable[..., Outcome], command: list[str]) -> None:
-    refused = statejump(*command, "trusses/boom")
+@pytest.mark.parametrize(("command", "case", "name"), [
+    (["dem"], "trusses/hinge_line", "hinge 'left'"), (["compare"], "trusses/hinge_line", "hinge 'left'"),
+    (["truss", "answers"], "trusses/boom", "beam 'bay_1'"), (["control"], "trusses/boom", "beam 'bay_1'")])
+def test_commands_refuse_what_they_lack(statejump: Callable[..., Outcome], command: list[str], case: str, name: str
+                                        ) -> None:
+    refused = statejump(*command, case)
     assert refused.status == 2
-    assert "beam 'bay_1'" in refused.errors
+    assert name in refused.errors
 
 
 @pytest.mark.parametrize("load_N", [0.01, 100.0])
