@@ -20,6 +20,7 @@ from statejump import load
 from statejump.cli import streams
 from statejump.core import errors
 from statejump.core.errors import StatejumpError, printable
+from statejump.core.pace import WARNING, show_pace, shown_by
 from statejump.core.progress import console
 from statejump.core.tables import write_markdown
 
@@ -181,3 +182,17 @@ def test_stream_that_is_lost_is_lost_once(monkeypatch: pytest.MonkeyPatch) -> No
     stream = streams.Stream(Broken())  # type: ignore[arg-type]
     assert stream.write("abc") == 3 and stream.lost is not None and stream.lost.errno == 5
     assert streams.Stream(None).write("abc") == 3
+
+
+@pytest.mark.parametrize(("steps", "rate", "done", "lines"), [
+    (1_000_000, 200_000.0, 0.0, []),  # 5 s need no line
+    (1_107_200, 16_100.0, 0.11, ["1 110 000 steps, 16 100 steps/s, 61 s left"]),
+    (60_000_000, 50_000.0, 0.5, ["60 000 000 steps, 50 000 steps/s, 10 min left"]),
+    (26_000_000_000, 100_000.0, 0.0, ["2.6e+10 steps, 100 000 steps/s, 3 d left", WARNING]),
+])
+def test_pace_of_a_run(steps: int, rate: float, done: float, lines: list[str]) -> None:
+    shown: list[str] = []
+    show_pace(steps, rate, done)  # nobody looks
+    with shown_by(shown.append):
+        show_pace(steps, rate, done)
+    assert shown == lines

@@ -422,9 +422,10 @@ def test_models_without_rotations_refuse_beams() -> None:
     with pytest.raises(StatejumpError) as refused:
         motion.simulate(case.changed({"motion.scheme": "regularised", "motion.masses": "lumped", "reduced.sticking": "elastic"}))
     assert refused.value.code == "beams_not_supported"
+    check_dem(case)
     with pytest.raises(StatejumpError) as refused:
-        check_dem(case)
-    assert refused.value.code == "dem_element"
+        check_dem(sj.load(REPOSITORY / "cases" / "trusses" / "hinge_line.toml"))
+    assert refused.value.code == "dem_joint"
 
 
 def test_answers_of_beams_rank_no_hinges() -> None:
@@ -448,10 +449,10 @@ def test_boom_has_a_page_and_tables(statejump: Callable[..., Outcome]) -> None:
 
 
 @pytest.mark.parametrize("command", [["dem"], ["compare"]])
-def test_commands_without_beams_refuse_them(statejump: Callable[..., Outcome], command: list[str]) -> None:
-    refused = statejump(*command, "trusses/boom")
+def test_commands_refuse_what_they_lack(statejump: Callable[..., Outcome], command: list[str]) -> None:
+    refused = statejump(*command, "trusses/hinge_line")
     assert refused.status == 2
-    assert "beam 'bay_1'" in refused.errors
+    assert "hinge 'left'" in refused.errors
 
 
 @pytest.mark.parametrize("load_N", [0.01, 100.0])

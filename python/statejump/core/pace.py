@@ -8,8 +8,8 @@ from contextvars import ContextVar
 
 LEAST_S = 10.0  # duration below which the pace of a run is not shown
 HOUR_S = 3600.0
-WARNING = ("warning: the run takes more than an hour; a shorter thermal.period_s takes fewer steps, 'statejump reduced' "
-           "takes none")
+WARNING = ("warning: the run takes more than an hour; a shorter thermal.period_s takes fewer steps, 'statejump "
+           "reduced' takes none")
 
 _show: ContextVar[Callable[[str], None] | None] = ContextVar("_show", default=None)
 

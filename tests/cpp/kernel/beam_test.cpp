@@ -332,6 +332,39 @@ TEST(Beam, SmallDisplacementsHaveTheStiffnessOfATimoshenkoBeam) {
   EXPECT_LT((k - k.transpose()).norm(), 1e-12 * beam.axial);
 }
 
+// Rates of the modes against differences of the local rotations; forces on the modes do the work of
+// their balance. Rounding grows with the velocities, of order 1, over the length.
+TEST(Beam, RatesAndForcesOfItsModesAreDual) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> between(-1.0, 1.0);
+  for_many_states([&](const Beam& beam, const Ends& ends) {
+    const BeamStep step = beam_step(beam, ends.state());
+    Vector12 velocities;
+    for (auto& one : velocities) one = between(random);
+    const auto moved = [&](double time) {
+      Ends made = ends;
+      for (std::size_t end = 0; end < 2; ++end) {
+        const auto row = 6 * static_cast<Eigen::Index>(end);
+        made.place[end] += time * velocities.segment<3>(row);
+        made.rotation[end] =
+            rotation_of(time * velocities.segment<3>(row + 3)) * ends.rotation[end];
+      }
+      const BeamStep at(beam, made.state());
+      const Vector3 first = at.local_rotation(0), second = at.local_rotation(1);
+      BeamStep::Vector6 modes;
+      modes << at.length(), 0.5 * (first.tail<2>() - second.tail<2>()),
+          0.5 * (first.tail<2>() + second.tail<2>()), second.x() - first.x();
+      return modes;
+    };
+    const BeamStep::Vector6 rates = step.mode_rates(velocities);
+    EXPECT_LT((rates - difference(1e-3, moved)).norm(), 1e-11);
+    BeamStep::Vector6 forces;
+    for (auto& one : forces) one = between(random);
+    const Vector12 balance = step.to_world(step.balance_in_frame(forces));
+    EXPECT_NEAR(balance.dot(velocities), forces.dot(rates), 1e-13);
+  });
+}
+
 TEST(Beam, RefusesLargeLocalRotations) {
   const Beam beam = beam_of(false);
   Ends ends;
