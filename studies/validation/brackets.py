@@ -91,8 +91,8 @@ def entry() -> Entry:
         "slide along x against 5 N, their other motions are tied; a spring of 1 MN/m joins the tops. One bracket is "
         "heated uniformly, the other by half as much and by a gradient, by 0.06, 0, -0.06 and 0 K. Find the slide.",
         tolerance=2e-4, reason="solver entries", rows=rows, sketch=SKETCH,
-        model="CalculiX ties the ends with springs of 1 GN/m and 100 kN m/rad, we tie them rigidly. The script evaluates a "
-        "play operator on the condensed stiffness with both ties.",
+        model="CalculiX ties the ends with springs of 1 GN/m and 100 kN m/rad, we tie them rigidly. The script "
+        "evaluates a play operator on the condensed stiffness with both ties.",
         verdict="Two condensed bodies and a slider give the slide and its residual of the full meshes.")
 
 
