@@ -411,6 +411,8 @@ CODES: dict[str, Code] = {
     "openturns_missing": Code(
         what="OpenTURNS", cause="the library is not installed", remedy="install the package python3-openturns",
     ),
+    "rare_interrupted": Code(
+        what="interrupted; {finished:,} runs are kept in {path}, the same command goes on with the others"),
     "rare_needs_limit": Code(cause="exactly one of {options} is needed"),
     "rare_needs_reduced": Code(cause="rare events need the reduced model", remedy="set model = 'reduced'"),
     "rare_run_failed": Code(
