@@ -10,7 +10,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 import pytest
 
-from conftest import Outcome
+from conftest import REPOSITORY, Outcome
 
 import statejump as sj
 from statejump.campaign.rare import design_point, model
@@ -147,3 +147,37 @@ def test_the_command_writes_the_result(statejump: Callable[..., Outcome], cases:
     assert found["interval_95"][0] < found["probability"] < found["interval_95"][1] and found["form"]["valid"]
     assert 1e-4 < found["probability"] < 6e-4 and len(found["form"]["design_point"]) == 5
     assert design_point.KINK < 1
+
+
+def command(tmp_path: Path) -> list[str]:
+    text = ['[campaign]', 'name = "tail"', f'case = "{REPOSITORY}/cases/table1.toml"', 'samples = 10', 'seed = 3', '[[vary]]',
+            'key = "joint.friction_coefficient"', 'distribution = "lognormal"', 'relative = 0.2']
+    (tmp_path / "tail.toml").write_text("\n".join(text), encoding="utf-8")
+    return ["rare", "tail.toml", "--outcome", "state_jump_m", "--above", "4.5e-5", "--results", "out"]
+
+
+def test_an_interrupted_command_goes_on(statejump: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    arguments, original, runs = command(tmp_path), model.run_sample, list[int]()
+
+    def interrupted(recipe: model.Shifted, index: int) -> Any:
+        runs.append(index)
+        if len(runs) == 60:
+            raise KeyboardInterrupt
+        return original(recipe, index)
+
+    monkeypatch.setattr(model, "run_sample", interrupted)
+    stopped = statejump(*arguments)
+    journal = tmp_path / "out" / "tail_rare" / "rare.journal"
+    assert stopped.status == 130 and "59 runs are kept" in stopped.errors and journal.exists()
+    torn = journal.read_bytes()[:-3]  # the last line: its run is repeated
+    journal.write_bytes(torn)
+    runs[:] = [0] * 60
+    assert statejump(*arguments).status == 0
+    found = json.loads((tmp_path / "out" / "tail_rare" / "rare.json").read_text(encoding="utf-8"))
+    assert len(runs) - 60 == found["runs"] - 58
+    monkeypatch.setattr(model, "run_sample", original)
+    assert statejump(*arguments, "--restart", "--workers", "2").status == 0
+    assert json.loads((tmp_path / "out" / "tail_rare" / "rare.json").read_text(encoding="utf-8")) == found
+    journal.write_bytes(torn.replace(b"0", b"1", 1))
+    damaged = statejump(*arguments)
+    assert damaged.status == 2 and "line 1 is damaged" in damaged.errors

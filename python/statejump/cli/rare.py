@@ -10,12 +10,13 @@ import click
 from statejump.campaign.campaign_file import load_campaign
 from statejump.campaign.plan import MONTECARLO
 from statejump.campaign.rare.calls import VARIATION, event_of, run
+from statejump.campaign.rare.kept import Kept
 from statejump.campaign.rare.model import METHODS
-from statejump.cli.terminal import QUIET, RESULTS, CaseFile, make_console, print_shown, since_start_s, undivided
-from statejump.core.errors import NotAllowed, located
+from statejump.cli.terminal import QUIET, RESULTS, CaseFile, make_console, print_shown, progress, since_start_s
+from statejump.core.errors import Interrupted, NotAllowed, located
 from statejump.core.results_folder import Results
 
-OPTIONS = ("outcome", "above", "method", "runs", "variation", "sobol")
+OPTIONS = ("outcome", "above", "method", "runs", "variation", "sobol", "workers")
 
 
 @click.command("rare")
@@ -31,12 +32,16 @@ OPTIONS = ("outcome", "above", "method", "runs", "variation", "sobol")
               help="Coefficient of variation at which importance sampling ends.")
 @click.option("--sobol", type=int, default=0, metavar="N", help="Sobol indices of the outcome, with N times the number "
               "of random variables plus two runs.")
+@click.option("--workers", type=int, metavar="N", help="Processes for importance sampling.  [default: this process]")
+@click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler for importance sampling, as tcp://host:8786.")
+@click.option("--restart", is_flag=True, help="Drop finished runs of an earlier command.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @RESULTS
 @QUIET
 def rare_command(
     file: Path, outcome: str, above: float | None, below: float | None, method: str, runs: int | None,
-    variation: float, sobol: int, as_json: bool, results: Results, quiet: bool,
+    variation: float, sobol: int, workers: int | None, scheduler: str | None, restart: bool, as_json: bool,
+    results: Results, quiet: bool,
 ) -> None:
     """The small probability that an outcome of a Monte Carlo CAMPAIGN is beyond a limit, with its interval.
 
@@ -50,8 +55,14 @@ def rare_command(
         with located(file=file):
             event = event_of(plan, outcome, above, below)
             with results.folder(f"{plan.name}_rare") as folder:
-                with undivided(console, f"{plan.name}, {METHODS.get(method, method)}") as on_progress:
-                    found = run(plan, event, method, runs, variation, sobol, on_progress)
+                kept = Kept(plan, folder.path, restart)
+                try:
+                    with progress(console, f"{plan.name}, {METHODS.get(method, method)}") as on_progress:
+                        found = run(plan, event, method, runs, variation, sobol, on_progress, kept, workers, scheduler)
+                except (KeyboardInterrupt, Interrupted):
+                    raise Interrupted(code="rare_interrupted", finished=len(kept.samples), path=kept.path) from None
+                finally:
+                    kept.close()
                 written = folder.publish(found.write(folder.staged))
     except NotAllowed as refused:
         refused.key = f"--{refused.key}" if refused.key in OPTIONS else refused.key

@@ -389,7 +389,8 @@ CODES: dict[str, Code] = {
     "sweep_with_distribution": Code(beside="in a sweep", cause="only 'statejump montecarlo' draws samples"),
     # Rare events
     "nlopt_missing": Code(
-        what="the package nlopt is missing", remedy="install it with 'apt install python3-nlopt', or use another method"),
+        what="the package nlopt is missing", remedy="install it with 'apt install python3-nlopt', or use 'slsqp'",
+    ),
     "design_axis_and_position": Code(cause="an axis belongs to node.*.position_m, and to no other key"),
     "design_axis_of_plane": Code(cause="the positions of this truss have two components"),
     "design_bad_formula": Code(
@@ -400,7 +401,7 @@ CODES: dict[str, Code] = {
     "design_log_not_positive": Code(cause="a factor on a log scale must be above 0", remedy="set scale = 'linear'"),
     "design_no_guarantee": Code(
         what="the bound of {output} is not guaranteed, its margin is not derived",
-        remedy="see 'statejump bounds' for the reason, or use the quantity 'linear_bound'"),
+        remedy="see 'statejump bounds' for the reason, or use 'linear_bound'"),
     "design_no_keys": Code(cause="must name at least one key"),
     "design_no_node": Code(cause="no node that moves has such a name"),
     "design_no_value": Code(cause="the case has no value other than 0 that a factor could change"),
@@ -410,6 +411,8 @@ CODES: dict[str, Code] = {
     "openturns_missing": Code(
         what="OpenTURNS", cause="the library is not installed", remedy="install the package python3-openturns",
     ),
+    "rare_interrupted": Code(
+        what="interrupted; {finished:,} runs are kept in {path}, the same command goes on with the others"),
     "rare_needs_limit": Code(cause="exactly one of {options} is needed"),
     "rare_needs_reduced": Code(cause="rare events need the reduced model", remedy="set model = 'reduced'"),
     "rare_run_failed": Code(

@@ -59,8 +59,7 @@ class DesignRequirement(Item):
     """A quantity with a limit. Every node has a constraint of its own, at each point of the grid of [robust]."""
 
     quantity: str = choice(..., QUANTITIES,
-                           "over all cycles; bound: guaranteed for any temperature history; linear_bound: without the "
-                           "margin")
+                           "over all cycles; bound: guaranteed for any temperature history; linear_bound: no margin")
     at_most: float | None = parameter(None, "as quantity", -math.inf, math.inf, "this or at_least")
     at_least: float | None = parameter(None, "as quantity", -math.inf, math.inf, "this or at_most")
     nodes: list[str] = texts(["*"], "of jump_m: names, * for all nodes or as part of a name")

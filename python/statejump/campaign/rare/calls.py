@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from statejump.campaign.campaign_file import plan_for
+from statejump.campaign.campaign_file import check_workers, plan_for
 from statejump.campaign.plan import MONTECARLO, Plan
 from statejump.campaign.rare import estimate
 from statejump.campaign.rare.design_point import found_by
+from statejump.campaign.rare.kept import Kept
 from statejump.campaign.rare.model import METHODS, Event, Model
 from statejump.campaign.rare.result import Rare, made
 from statejump.core import libraries
@@ -26,6 +27,7 @@ def rare(
     case: Case, distributions: Mapping[str, Mapping[str, Any]], *, outcome: str, above: float | None = None,
     below: float | None = None, method: str = "form", runs: int | None = None, variation: float = VARIATION,
     sobol: int = 0, seed: int = 1, progress: Progress = False, outputs: Sequence[str] = (),
+    workers: int | None = None,
 ) -> Rare:
     """Compute the small probability that an outcome of random samples is beyond a limit.
 
@@ -39,12 +41,14 @@ def rare(
     :param sobol: size of the sample for Sobol indices of the outcome, 0 for none
     :param seed: seed of the random numbers
     :param outputs: as for :func:`sweep`
+    :param workers: processes for importance sampling; None: this process
     :raises StatejumpError: the outcome is unknown, or the method is invalid for this event
     """
     tables = [(f"distributions[{key!r}]", {"key": key, **plain(wanted)}) for key, wanted in distributions.items()]
     plan = plan_for(case, MONTECARLO, tables, samples=1, seed=seed, asked=outputs)
     with shown(progress, f"{plan.name}, {METHODS.get(method, method)}") as on_progress:
-        return run(plan, event_of(plan, outcome, above, below), method, runs, variation, sobol, on_progress)
+        return run(plan, event_of(plan, outcome, above, below), method, runs, variation, sobol, on_progress,
+                   workers=workers)
 
 
 def event_of(plan: Plan, outcome: str, above: float | None, below: float | None) -> Event:
@@ -60,8 +64,15 @@ def event_of(plan: Plan, outcome: str, above: float | None, below: float | None)
 
 
 def run(plan: Plan, event: Event, method: str, runs: int | None, variation: float, sobol: int,
-        on_progress: OnProgress) -> Rare:
-    """Compute the probability of an event of a campaign; see :func:`rare`."""
+        on_progress: OnProgress, kept: Kept | None = None, workers: int | None = None,
+        scheduler: str | None = None) -> Rare:
+    """Compute the probability of an event of a campaign; see :func:`rare`.
+
+    :param kept: finished runs of an earlier command, to which this one adds its runs
+    :param workers: processes for importance sampling; None: this process
+    :param scheduler: address of a running Dask scheduler in place of these processes
+    """
+    check_workers("workers", workers)
     check_name("method", method, tuple(METHODS))
     for key, value, least in (("runs", runs, estimate.FEWEST_RUNS), ("sobol", sobol or None, 2)):
         if value is not None and value < least:
@@ -70,7 +81,8 @@ def run(plan: Plan, event: Event, method: str, runs: int | None, variation: floa
         raise NotAllowed("variation", variation, code="wrong_type", type="a number",
                          range=f"above 0 and at most {estimate.LARGEST_VARIATION:g}")
     libraries.openturns()
-    model = Model(plan, event, on_progress, 1)
+    model = Model(plan, event, on_progress, 1, kept=kept or Kept(plan),
+                  workers=workers, scheduler=scheduler)
     model.expected = sobol * (model.count + 2) + (600 if method == "form" else 4 * (runs or 1000))
     design = None
     if method == "form":

@@ -9,6 +9,7 @@ import numpy as np
 
 from statejump.campaign.rare.guard import Guard, refused
 from statejump.campaign.rare.design_point import DesignPoint
+from statejump.campaign.rare.kept import Kept, ahead
 from statejump.campaign.rare.model import Model
 from statejump.core import libraries
 
@@ -42,15 +43,18 @@ def importance_sampling(model: Model, design: DesignPoint, most_runs: int, varia
     recipe, centre = model.around(design.variates), np.array(design.variates)
     beyond: list[float] = []
     failed: list[float] = []
-    for index in range(most_runs):
-        failures = len(model.failures)
-        margin = model.margin(recipe, index)
-        # Density of the standard normal distribution over that of the samples.
-        weight = exp(0.5 * float(centre @ centre) - float(centre @ recipe.point(index)))
-        failed.append(weight if len(model.failures) > failures else 0.0)
-        beyond.append(weight if margin > 0 else 0.0)
-        if index + 1 >= FEWEST_RUNS and _statistics(beyond)[1] <= variation:
-            break
+    with ahead(model.kept or Kept(model.plan), recipe, recipe.centre, model.workers, model.scheduler) as run_ahead:
+        for index in range(most_runs):
+            if index % BLOCK == 0:
+                run_ahead(range(index, min(index + BLOCK, most_runs)))
+            failures = len(model.failures)
+            margin = model.margin(recipe, index)
+            # Density of the standard normal distribution over that of the samples.
+            weight = exp(0.5 * float(centre @ centre) - float(centre @ recipe.point(index)))
+            failed.append(weight if len(model.failures) > failures else 0.0)
+            beyond.append(weight if margin > 0 else 0.0)
+            if index + 1 >= FEWEST_RUNS and _statistics(beyond)[1] <= variation:
+                break
     found, spread = _statistics(beyond)
     if spread > LARGEST_VARIATION:
         raise refused(model, "rare_not_sampled", variation=spread, runs=len(beyond))

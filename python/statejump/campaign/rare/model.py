@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from statejump.campaign.plan import Plan, Recipe
+from statejump.campaign.rare.kept import Kept
 from statejump.campaign.sampling import Distribution, Independent
 from statejump.campaign.work import run_sample
 from statejump.core.progress import OnProgress
@@ -77,6 +78,9 @@ class Model:
     """Runs samples, and counts runs and failures.
 
     :param expected: number of runs after which the progress is 1
+    :param kept: finished runs; None: they are not kept
+    :param workers: processes for importance sampling; None: this process
+    :param scheduler: address of a running Dask scheduler in place of these processes
     """
 
     plan: Plan
@@ -87,6 +91,9 @@ class Model:
     without_value: int = 0
     failures: list[str] = field(default_factory=list)
     known: dict[tuple[float, ...], float] = field(default_factory=dict)
+    kept: Kept | None = None
+    workers: int | None = None
+    scheduler: str | None = None
 
     @property
     def count(self) -> int:
@@ -100,7 +107,11 @@ class Model:
 
     def margin(self, recipe: Shifted, index: int = -1) -> float:
         """Run a sample, or the centre, and return its margin; NaN if the sample failed or has no value."""
-        sample = run_sample(recipe, index)
+        sample = None if self.kept is None else self.kept.samples.get((recipe.centre, index))
+        if sample is None:
+            sample = run_sample(recipe, index)
+            if self.kept is not None:
+                self.kept.add(recipe.centre, sample)
         self.runs += 1
         self.on_progress(min(1.0, self.runs / self.expected))
         if sample.values is None:
