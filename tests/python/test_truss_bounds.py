@@ -215,6 +215,18 @@ def test_margin_covers_a_lever_that_turns_far() -> None:
     assert 0 < abs(bound.attained_m - bound.spread_m) <= bound.margin_m
 
 
+def test_margin_covers_a_torsion_spring_that_turns_far() -> None:
+    case = sj.load("latch_lever").to_dict()
+    case["latch_hinge"][0] |= {"friction_moment_N_m": 200.0, "deadband_rad": 0.05}
+    case["link"][1]["cross_section_area_m2"] = 2e-7
+    case["torsion_spring"] = [{"name": "T", "links": [link["name"] for link in case["link"][:2]],
+                               "stiffness_N_m_per_rad": 5e3, "bias_rad": 0.01}]
+    found = bounds(sj.load(case), ["node:B.y"], attain=True, simulate=False)
+    bound = found.bounds[0]
+    assert found.quality == "linear" and bound.margin_m > 1e-4 * bound.spread_m
+    assert 0 < abs(bound.attained_m - bound.spread_m) <= bound.margin_m
+
+
 def test_margin_of_one_turned_bar_bounds_its_exact_force() -> None:
     case = sj.load("latch_lever").to_dict()
     case["latch_hinge"][0] |= {"friction_moment_N_m": 3000.0, "deadband_rad": 0.05}
