@@ -5,7 +5,11 @@ from __future__ import annotations
 from argparse import Namespace
 from collections import Counter
 
+import pytest
+
 import bounds_campaign
+import statejump as sj
+from walking import walker
 
 
 def test_no_state_of_ordinary_structures_leaves_its_bounds() -> None:
@@ -21,3 +25,13 @@ def test_no_state_of_ordinary_structures_leaves_its_bounds() -> None:
 def test_the_table_counts_states_outside() -> None:
     row = dict.fromkeys(bounds_campaign.FIELDS, 1) | {"class": "A", "quality": "exact", "outside": 1, "spread_m": 2.0}
     assert "| A | exact | 1 | 1 | 1 | 0.5000 | 0.5000 | 0.5000 |" in bounds_campaign.table([row])
+
+
+@pytest.mark.parametrize("blocks", [4, 5, 10])
+def test_the_drift_of_walking_blocks_is_that_of_whole_numbers_of_blocks(blocks: int) -> None:
+    one = walker("sheet", blocks, 0.3)
+    verdict = sj.load(one.document()).bounds(output=["node:N0.x"]).verdict
+    assert verdict.kind == "may_ratchet"
+    # Strains are added in theory but multiplied in the solver.
+    assert verdict.drift_m == pytest.approx(one.walk_of_blocks_m, rel=1e-4)
+    assert abs(one.walk_m / verdict.drift_m - 1) > 1e-3  # a continuous sheet walks by another distance

@@ -259,6 +259,17 @@ def test_trusses_without_bounds_are_refused(which: str) -> None:
         bounds(sj.load(case), simulate=False)
 
 
+def test_a_pad_is_refused_by_its_friction_limit() -> None:
+    case = chain(30.0)
+    del case["slider"]
+    case["node"][1].pop("fixed", None)
+    case["node"][1]["force_N"] = [0.0, -50.0]
+    case["pad"] = [{"name": "P", "nodes": ["N1"], "normal": [0.0, 1.0], "normal_stiffness_N_per_m": 1e7,
+                    "friction_coefficient": 0.3}]
+    with failing("bounds_of_pad", joint_with_clearance="pad 'P'"):
+        bounds(sj.load(case), simulate=False)
+
+
 def test_a_motion_that_nothing_holds_is_named() -> None:
     loose = chain(30.0)
     loose["node"].append(node("M", (1.0, 0.0), "y"))

@@ -56,3 +56,33 @@ def slip_of_cycle(of: Stuck, start: np.ndarray, cycles: int) -> float:
                 before, p = p, slid(of, p, corner + share * (after - corner))
                 total += float(np.abs(p - before).sum())
     return total
+
+
+# Slip of the second contact raises the normal force of the first one by 0.4 p2; temperature shears only the first one.
+COUPLED = np.eye(4)
+COUPLED[0, 3] = COUPLED[3, 0] = -0.4
+SHEAR = np.array([[0.0, 0.0], [0.0, 0.0], [1.2, 0.0], [0.0, 0.0]])
+NORMAL_N, COEFFICIENT = np.array([1.0, 5.0]), 0.5
+
+
+def test_a_settled_state_exists_but_some_starts_slip_for_ever() -> None:
+    of = contacts(COUPLED, SHEAR, NORMAL_N, COEFFICIENT)
+    # The first contact settles if the range of its friction, 1.2, is at most 2 μ λ1 = 1 + 0.4 p2.
+    assert slip_of_cycle(of, np.array([0.0, 0.0]), 10) == pytest.approx(2 * 0.2, rel=1e-6)
+    assert slip_of_cycle(of, np.array([0.0, 0.7]), 10) == 0.0
+    # The second contact holds slips up to μ λ2 = 2.5.
+    assert settling(of, RANGE)[0] == pytest.approx((1 + 0.4 * 2.5) / 1.2, rel=1e-6)
+
+
+@pytest.mark.parametrize("least_N", [None, np.array([0.0, 5.0]), np.array([0.9, 5.0])])
+def test_such_contacts_are_not_certified(least_N: np.ndarray | None) -> None:
+    found = judged(contacts(COUPLED, SHEAR, NORMAL_N, COEFFICIENT), RANGE, least_N)
+    assert found.kind == "unknown" and not found.certified and found.factor > 1
+    assert "some starts may slip for ever" in found.text
+
+
+def test_with_enough_least_force_they_are_estimated_to_settle() -> None:
+    of = contacts(COUPLED, SHEAR, np.array([2.5, 5.0]), COEFFICIENT)
+    assert judged(of, RANGE, np.array([1.3, 5.0])).kind in ("settles", "never_slips")
+    for second in np.linspace(-2.4, 2.4, 5):
+        assert slip_of_cycle(of, np.array([0.0, second]), 4) < 1e-9
