@@ -14,7 +14,7 @@ from walking import walker
 
 def test_no_state_of_ordinary_structures_leaves_its_bounds() -> None:
     families = ["warren", "tower", "rib", "chain", "bracket"]
-    arguments = Namespace(count=3, seed=50, most=3, histories=1, families=families, classes=["A", "B", "C"], limit=100,
+    arguments = Namespace(count=2, seed=50, most=3, histories=1, families=families, classes=["A", "B", "C"], limit=100,
                           attain=True)
     rows = list(bounds_campaign.compared(arguments, Counter()))
     assert len({(row["family"], row["seed"]) for row in rows}) >= 4
