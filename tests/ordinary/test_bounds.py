@@ -13,13 +13,21 @@ from walking import walker
 
 
 def test_no_state_of_ordinary_structures_leaves_its_bounds() -> None:
-    families = ["warren", "tower", "rib", "chain", "bracket"]
+    families = ["warren", "tower", "rib", "bracket"]
     arguments = Namespace(count=2, seed=50, most=3, histories=1, families=families, classes=["A", "B", "C"], limit=100,
-                          attain=True)
+                          attain=False)
     rows = list(bounds_campaign.compared(arguments, Counter()))
     assert len({(row["family"], row["seed"]) for row in rows}) >= 4
     assert not [row for row in rows if row["outside"]]
     assert all(row["reached_m"] <= row["spread_m"] * (1 + 1e-6) for row in rows)
+
+
+def test_a_history_attains_the_bound_of_a_structure_with_stops() -> None:
+    arguments = Namespace(count=1, seed=1, most=1, histories=1, families=["tower"], classes=["B"], limit=100,
+                          attain=True)
+    (row, *_) = bounds_campaign.compared(arguments, Counter())
+    assert row["class"] == "B" and not row["outside"]
+    assert row["attained_m"] >= 0.999 * row["spread_m"] and row["in_range_m"] <= row["range_m"] + row["margin_m"]
 
 
 def test_the_table_counts_states_outside() -> None:
