@@ -215,6 +215,18 @@ def test_margin_covers_a_lever_that_turns_far() -> None:
     assert 0 < abs(bound.attained_m - bound.spread_m) <= bound.margin_m
 
 
+def test_margin_covers_a_torsion_spring_that_turns_far() -> None:
+    case = sj.load("latch_lever").to_dict()
+    case["latch_hinge"][0] |= {"friction_moment_N_m": 200.0, "deadband_rad": 0.05}
+    case["link"][1]["cross_section_area_m2"] = 2e-7
+    case["torsion_spring"] = [{"name": "T", "links": [link["name"] for link in case["link"][:2]],
+                               "stiffness_N_m_per_rad": 5e3, "bias_rad": 0.01}]
+    found = bounds(sj.load(case), ["node:B.y"], attain=True, simulate=False)
+    bound = found.bounds[0]
+    assert found.quality == "linear" and bound.margin_m > 1e-4 * bound.spread_m
+    assert 0 < abs(bound.attained_m - bound.spread_m) <= bound.margin_m
+
+
 def test_margin_of_one_turned_bar_bounds_its_exact_force() -> None:
     case = sj.load("latch_lever").to_dict()
     case["latch_hinge"][0] |= {"friction_moment_N_m": 3000.0, "deadband_rad": 0.05}
@@ -244,6 +256,17 @@ def test_trusses_without_bounds_are_refused(which: str) -> None:
     for slider in case.get("slider", []):
         slider.update(changes)
     with failing(code):
+        bounds(sj.load(case), simulate=False)
+
+
+def test_a_pad_is_refused_by_its_friction_limit() -> None:
+    case = chain(30.0)
+    del case["slider"]
+    case["node"][1].pop("fixed", None)
+    case["node"][1]["force_N"] = [0.0, -50.0]
+    case["pad"] = [{"name": "P", "nodes": ["N1"], "normal": [0.0, 1.0], "normal_stiffness_N_per_m": 1e7,
+                    "friction_coefficient": 0.3}]
+    with failing("bounds_of_pad", joint_with_clearance="pad 'P'"):
         bounds(sj.load(case), simulate=False)
 
 

@@ -698,6 +698,11 @@ CODES: dict[str, Code] = {
         cause="not yet: bounds of joints with clearance (class C)",
         remedy="simulate the histories that matter: 'statejump truss answers'",
     ),
+    "bounds_of_pad": Code(
+        what="{joint_with_clearance}: its friction limit follows its normal force",
+        cause="not yet: bounds of pads",
+        remedy="give sliders with normal forces, or simulate the histories that matter: 'statejump truss answers'",
+    ),
     "bounds_of_open_contact": Code(
         what="{joint_with_clearance} carries no force without friction",
         cause="the direction of its contact is open",

@@ -149,9 +149,9 @@ def clearances(case: TrussCase) -> Clearances:
 
 def _refuse_others(truss: ResolvedTruss, named: Sequence[Joint]) -> None:
     for joint in named:
-        if joint.section == "ball_joint":
-            raise StatejumpError(code="bounds_of_clearance", place=truss.name, case=truss.name,
-                                 joint_with_clearance=str(joint))
+        if joint.section in ("ball_joint", "pad"):
+            code = "bounds_of_pad" if joint.section == "pad" else "bounds_of_clearance"
+            raise StatejumpError(code=code, place=truss.name, case=truss.name, joint_with_clearance=str(joint))
     sliders = truss.sliders
     for index in np.flatnonzero(sliders.have_stops | (sliders.play_m > 0))[:1]:
         raise StatejumpError(code="bounds_of_stop", place=truss.name, case=truss.name, change="reach a stop",

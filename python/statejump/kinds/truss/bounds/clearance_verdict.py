@@ -12,7 +12,7 @@ linear truss. Neither is ever called certified.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, nan
 from typing import Any
 
@@ -170,18 +170,23 @@ def verdict_of_clearance(case: TrussCase, temperatures: Temperatures, least_N: n
     drift = nan if repeated is None else repeated.drift_m
     if isinstance(of, str):
         return Verdict("unknown", f"not certified: {of}{seen}", drift_m=drift, certified=False)
+    return replace(judged(of, temperatures, least_N, seen), drift_m=drift)
+
+
+def judged(of: Stuck, temperatures: Temperatures, least_N: np.ndarray | None, seen: str = "") -> Verdict:
+    """Return the verdict on joints that stick at the start. ``seen``: what a simulation shows."""
     count = len(of.joints)
     holds, first = settling(of, temperatures, slips=False)
     if holds >= 1:
         return Verdict("never_slips", f"never slips ({ESTIMATE}); factor {holds:.4g} to the first slip, set by {first}"
-                       f"{seen}", holds, first, np.zeros(count, dtype=bool), drift_m=drift, certified=False)
+                       f"{seen}", holds, first, np.zeros(count, dtype=bool), certified=False)
     factor, limiting = settling(of, temperatures)
     said = f"factor {factor:.4g} to the limit of settling, set by {limiting}"
     if factor < 1:
-        return Verdict("repeats", f"rubs in every cycle ({ESTIMATE}); {said}{seen}", factor, limiting, drift_m=drift,
+        return Verdict("repeats", f"rubs in every cycle ({ESTIMATE}); {said}{seen}", factor, limiting,
                        certified=False)
     if least_N is not None and settling(of, temperatures, least_N)[0] >= 1:
         return Verdict("settles", f"settles ({ESTIMATE}), also with the least contact forces; {said}{seen}", factor,
-                       limiting, drift_m=drift, certified=False)
+                       limiting, certified=False)
     return Verdict("unknown", f"not certified: a settled state exists, but some starts may slip for ever; {said}{seen}",
-                   factor, limiting, drift_m=drift, certified=False)
+                   factor, limiting, certified=False)

@@ -18,7 +18,9 @@ from statejump.kinds.truss.bounds.contact_states import farthest_state
 from statejump.kinds.truss.bounds.coupled import Coupled, coupled
 from statejump.kinds.truss.bounds.extremes import farthest
 from statejump.kinds.truss.bounds.history import Attained
-from statejump.kinds.truss.bounds.margin import Arms, Bars, bars_of, defects, relative
+from statejump.kinds.truss.bounds.margin import (
+    Arms, Bars, bars_of, defects, joined, relative, torsion_arms,
+)
 from statejump.kinds.truss.bounds.outputs import Output, chosen
 from statejump.kinds.truss.bounds.ranges import Temperatures, ways
 from statejump.kinds.truss.bounds.result import Bound, Bounds
@@ -111,32 +113,20 @@ def _rows(of: Clearances) -> tuple[Any, Bars, Arms]:
 
 def _arms(of: Clearances) -> Arms:
     """Return the links that friction moments and torsion springs turn; the first numbers are those of revolutes."""
-    truss, parts, springs = of.truss, of.truss.revolutes, of.truss.elements["torsion_spring"]
-    count = of.count
-    owners = [(joint, link, parts.axis[joint]) for joint in range(count)
-              for link in (parts.journal_link[joint], parts.bearing_link[joint])]
-    owners += [(count + spring, link, springs.axis[spring]) for spring in range(len(springs.names))
-               for link in springs.links[spring]]
-    owners = [one for one in owners if one[1] >= 0]
-    latch = np.array([one[0] for one in owners], dtype=int)
-    pairs = np.array([truss.links.nodes[one[1]] for one in owners], dtype=int).reshape(-1, 2)
-    axis = np.array([one[2] for one in owners], dtype=float).reshape(-1, 3)
+    truss, parts = of.truss, of.truss.revolutes
+    owners = [(joint, link) for joint in range(of.count)
+              for link in (parts.journal_link[joint], parts.bearing_link[joint]) if link >= 0]
+    joint = np.array([one for one, _ in owners], dtype=int)
+    pairs = np.array([truss.links.nodes[link] for _, link in owners], dtype=int).reshape(-1, 2)
+    axis = np.asarray(parts.axis, dtype=float)[joint].reshape(-1, 3)
     place = truss.nodes.position_m + of.displacement_m
     span = place[pairs[:, 1]] - place[pairs[:, 0]]
     across = span - (span * axis).sum(axis=1, keepdims=True) * axis
     length = np.linalg.norm(across, axis=1)
     along = across / length[:, None]
     rows = vstack([relative(of, pairs, along), relative(of, pairs, np.cross(axis, along))]).tocsr()
-    before = truss.nodes.position_m[pairs[:, 1]] - truss.nodes.position_m[pairs[:, 0]]
-    turned = np.arctan2((np.cross(before, span) * axis).sum(axis=1), (before * across).sum(axis=1))
-    stiffness, moment = np.zeros(len(latch)), np.zeros(len(latch))
-    for one in range(len(latch)):
-        spring = latch[one] - count
-        if spring >= 0:
-            stiffness[one] = springs.stiffness_N_m_per_rad[spring]
-            angle = np.abs(turned[latch == latch[one]]).sum() + abs(springs.bias_rad[spring])
-            moment[one] = stiffness[one] * angle
-    return Arms(rows, latch, length, np.zeros(len(latch)), moment, stiffness)
+    nothing = np.zeros(len(joint))
+    return joined(Arms(rows, joint, length, nothing, nothing, nothing), torsion_arms(of, of.count))
 
 
 def bounds_of_clearance(case: TrussCase, names: Sequence[str], box: tuple[float, float] | None,

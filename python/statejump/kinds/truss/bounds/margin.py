@@ -101,7 +101,7 @@ def relative(of: Placed, pairs: np.ndarray, direction: np.ndarray) -> Any:
 
 @dataclass(frozen=True)
 class Arms:
-    """Arms of latches: links whose rotation is that of the latch."""
+    """Arms of latches and torsion springs: links whose rotation is that of the latch or the spring."""
 
     rows: Any  # of the motion along the first direction of all, then along the second
     latch: np.ndarray  # number of the latch
@@ -112,7 +112,10 @@ class Arms:
 
 
 def arms_of(of: Sliding, all_plays: bool = False) -> Arms:
-    """Return the arms of latches; their stiffnesses are those beyond the plays, or those of the equilibrium."""
+    """Return the arms of latches and torsion springs.
+
+    The stiffnesses of latches are those beyond the plays, or those of the equilibrium.
+    """
     (section,) = (joint.section for joint in JOINTS if joint.turns and not joint.bends)
     latches = of.truss.joints[section]
     which = [index for index, joint in enumerate(of.joints) if joint.section == section]
@@ -131,7 +134,35 @@ def arms_of(of: Sliding, all_plays: bool = False) -> Arms:
     beyond = rotation - np.clip(rotation, -edge, edge)
     other = np.abs(latches.preload_moment_N_m[owner] + stiffness * beyond)
     springs = np.where(all_plays | (beyond != 0), stiffness, 0.0)
-    return Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, springs)
+    made = Arms(rows, owner, length, latches.friction_moment_N_m[owner], other, springs)
+    return joined(made, torsion_arms(of, len(latches.names)))
+
+
+def torsion_arms(of: Placed, first: int) -> Arms:
+    """Return the links that torsion springs turn; the springs have the numbers from ``first`` on."""
+    truss, springs = of.truss, of.truss.elements["torsion_spring"]
+    owners = [(spring, link) for spring, links in enumerate(springs.links) for link in links if link >= 0]
+    spring = np.array([one for one, _ in owners], dtype=int)
+    pairs = np.array([truss.links.nodes[link] for _, link in owners], dtype=int).reshape(-1, 2)
+    place = truss.nodes.position_m + of.displacement_m
+    span, axis = place[pairs[:, 1]] - place[pairs[:, 0]], springs.axis[spring].reshape(-1, 3)
+    across = span - (span * axis).sum(axis=1, keepdims=True) * axis
+    length = np.linalg.norm(across, axis=1)
+    along = across / length[:, None]
+    rows = vstack([relative(of, pairs, along), relative(of, pairs, np.cross(axis, along))]).tocsr()
+    before = truss.nodes.position_m[pairs[:, 1]] - truss.nodes.position_m[pairs[:, 0]]
+    turned = np.abs(np.arctan2((np.cross(before, span) * axis).sum(axis=1), (before * across).sum(axis=1)))
+    angle = np.bincount(spring, turned, len(springs.names)) + np.abs(springs.bias_rad)
+    stiffness = springs.stiffness_N_m_per_rad
+    return Arms(rows, first + spring, length, np.zeros(len(spring)), (stiffness * angle)[spring], stiffness[spring])
+
+
+def joined(one: Arms, other: Arms) -> Arms:
+    """Return the arms of both."""
+    first, second = len(one.radius_m), len(other.radius_m)
+    rows = vstack([one.rows[:first], other.rows[:second], one.rows[first:], other.rows[second:]]).tocsr()
+    return Arms(rows, *(np.concatenate((getattr(one, name), getattr(other, name))) for name in (
+        "latch", "radius_m", "friction_N_m", "moment_N_m", "stiffness_N_m")))
 
 
 def margin(of: Sliding) -> Margin:
@@ -168,7 +199,7 @@ def margin(of: Sliding) -> Margin:
 
 def refuses_margin(of: Sliding) -> str:
     """Return why no margin is derived; empty: it is."""
-    without = (of.truss.elements, ("beam", "body", "torsion_spring")), (of.truss.joints, ("hinge", "rigid"))
+    without = (of.truss.elements, ("beam", "body")), (of.truss.joints, ("hinge", "rigid"))
     for parts, sections in without:
         for section in sections:  # the reactions of joints add no geometric stiffness to K
             if len(parts[section].names):

@@ -140,8 +140,8 @@ def sliding(case: TrussCase) -> Sliding:
     limits = found["friction_limit_N"]
     for index in friction:
         if np.isnan(limits[index]):
-            raise StatejumpError(code="bounds_of_clearance", place=truss.name, case=truss.name,
-                                 joint_with_clearance=str(named[index]))
+            code = "bounds_of_pad" if named[index].section == "pad" else "bounds_of_clearance"
+            raise StatejumpError(code=code, place=truss.name, case=truss.name, joint_with_clearance=str(named[index]))
     stiffness, guides = _stiffness(truss, named, found), found["guides"]
     check_stable(truss, stiffness, guides, found["of_nodes"].tocsr())
     of_joints = {key: found[name][friction] for key, name in (
