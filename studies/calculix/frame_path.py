@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Computes a structure with beams or condensed bodies in CalculiX along its temperature program, and compares it with the solver.
+"""Computes a structure with beams or condensed bodies in CalculiX along its temperature program, and compares it with
+the solver.
 
 Both compute the structure with STEP of its temperatures, loads, friction, preload, play and clearances, and results are
 divided by STEP. CalculiX then has small displacements, and so does the solver.

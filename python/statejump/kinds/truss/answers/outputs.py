@@ -20,7 +20,8 @@ class Output:
     """An output of a truss whose jump is divided among the joints.
 
     :param short: short name of the output
-    :param value: the output as a function of displacements (n, 3) of nodes and points of bodies, projected on the direction of the jump
+    :param value: the output as a function of displacements (n, 3) of nodes and points of bodies, projected on the
+        direction of the jump
     :param vector: all components of the output as a function of displacements
     """
 
