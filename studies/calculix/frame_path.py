@@ -49,7 +49,7 @@ def answer(case: TrussCase, truss: ResolvedTruss, parts: int = 2, even_shear: bo
     small = _small(truss)
     made = frame.Frame(small, parts=parts, even_shear=even_shear)
     lines = deck(made, times)
-    text = ccx.printed(lines)
+    text = ccx.printed(lines, ccx.LONGEST_OF_MESHES_S if truss.elements["body"].names else ccx.LONGEST_S)
     moved = ccx.tables(text, "displacements", "JOINTS")
     if len(moved) != len(times):
         raise FailedRun(code="calculix_increments")
