@@ -6,8 +6,8 @@
 
 A body is a ladder of beams, condensed to the nodes of its rails. It stands on a foot, expands against a spring, and its
 last node slides with friction. A body of six dofs is a bar between two nodes of three dofs. Prints a table: bodies,
-dofs of the interface of each, linear solves, CPU seconds of a path of one cycle (median of three), largest memory of the
-process.
+dofs of the interface of each, linear solves, CPU seconds of a path of one cycle (median of three), largest memory of
+the process.
 """
 from __future__ import annotations
 
