@@ -9,7 +9,8 @@ import numpy as np
 EXPANSION = 23e-6
 MASS_KG = 2700 * (0.2 * 0.04 * 0.01 + 0.04 * 0.01 * 0.11)
 CORNERS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
-BRICK = np.vstack([CORNERS, [[0, -1, -1], [1, 0, -1], [0, 1, -1], [-1, 0, -1], [0, -1, 1], [1, 0, 1], [0, 1, 1], [-1, 0, 1],
+BRICK = np.vstack([CORNERS, [[0, -1, -1], [1, 0, -1], [0, 1, -1], [-1, 0, -1],
+                             [0, -1, 1], [1, 0, 1], [0, 1, 1], [-1, 0, 1],
                              [-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]])
 PLATE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [1, 0], [0, 1], [-1, 0]])
 
@@ -67,7 +68,8 @@ def bracket(scale: float = 1.0, fine: bool = True, material: str = "70e9", densi
         "C": lambda p: abs(p[2]) < 1e-9 and p[0] < 0.0201,
         "P": lambda p: abs(p[1] - 0.04) < 1e-9 and 0.08 < p[0] < 0.15, "ONE": lambda p: not p.any()})
         + f"*MATERIAL,NAME=AL\n*ELASTIC\n{material},0.3\n*EXPANSION,ZERO=0.\n{EXPANSION}\n*DENSITY\n{density}\n"
-        + "*SOLID SECTION,ELSET=EALL,MATERIAL=AL\n*BOUNDARY\nC,1,3\n*STEP\n*STATIC\n*TEMPERATURE\nNALL,2.5\n*END STEP\n")
+        + "*SOLID SECTION,ELSET=EALL,MATERIAL=AL\n*BOUNDARY\nC,1,3\n"
+        + "*STEP\n*STATIC\n*TEMPERATURE\nNALL,2.5\n*END STEP\n")
 
 
 SANDWICH = ("*SHELL SECTION,ELSET=EALL,COMPOSITE\n0.0003,,AL\n0.01,,CORE\n0.0003,,AL\n*MATERIAL,NAME=CORE\n"
@@ -83,7 +85,8 @@ def panel(stiffened: bool = False, section: str = "*SHELL SECTION,ELSET=EALL,MAT
     nodes, elements = Nodes(), []
     for j in range(10):
         for i in range(20):
-            elements.append([nodes.number(np.array([*(0.05 * (np.array([i, j]) + (place + 1) / 2)), 0.0])) for place in PLATE])
+            corner = np.array([i, j])
+            elements.append([nodes.number(np.array([*(0.05 * (corner + (place + 1) / 2)), 0.0])) for place in PLATE])
 
     def square(x: float, y: float) -> Callable[[np.ndarray], bool]:
         return lambda p: abs(p[0] - x) < 0.0251 and abs(p[1] - y) < 0.0251

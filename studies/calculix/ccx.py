@@ -15,7 +15,7 @@ from statejump.core.errors import FailedRun, StatejumpError
 from statejump.core.scratch import scratch
 
 PROGRAM = "ccx"
-LONGEST_S = 1800.0
+LONGEST_S, LONGEST_OF_MESHES_S = 120.0, 3600.0
 _HEAD = re.compile(r"(displacements|stresses) \([^)]*\) for set (\S+) and time +\S+")
 
 
@@ -40,7 +40,7 @@ def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarr
             for step in tables(printed(deck), "displacements", set_name)]
 
 
-def printed(deck: Sequence[str]) -> str:
+def printed(deck: Sequence[str], longest_s: float = LONGEST_S) -> str:
     """Run a deck and return what it prints.
 
     :raises StatejumpError: CalculiX is not installed
@@ -53,9 +53,9 @@ def printed(deck: Sequence[str]) -> str:
         (folder / "deck.inp").write_text("\n".join(deck) + "\n", encoding="ascii")
         try:
             done = subprocess.run([program, "deck"], cwd=folder, capture_output=True, text=True, errors="replace",
-                                  stdin=subprocess.DEVNULL, timeout=LONGEST_S, check=False)
+                                  stdin=subprocess.DEVNULL, timeout=longest_s, check=False)
         except subprocess.TimeoutExpired:
-            raise FailedRun(code="calculix_timeout", limit_s=LONGEST_S) from None
+            raise FailedRun(code="calculix_timeout", limit_s=longest_s) from None
         said = [" ".join(line.split()).partition("; please")[0] for line in done.stdout.splitlines()
                 if "*ERROR" in line]
         if done.returncode or said or "Job finished" not in done.stdout:

@@ -21,8 +21,8 @@ def fe_command(case_file: Path, results: Results, quiet: bool) -> None:
     """CASE in finite elements beside the reduced model: writes a deck, runs CalculiX (ccx), reads it back.
 
     A bar on a slider gets frictional contact and stops; of a truss every joint is locked, and where its only joints are
-    sliders they slip as well. Beams bend, condensed bodies are the meshes of their decks, and sliders and hinges between
-    them slip. Exit status 1 where the two differ by more than they may.
+    sliders they slip as well. Beams bend, condensed bodies are the meshes of their decks, and sliders and hinges
+    between them slip. Exit status 1 where the two differ by more than they may.
 
     \b
     Example:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Computes a structure with beams or condensed bodies in CalculiX along its temperature program, and compares it with the solver.
+"""Computes a structure with beams or condensed bodies in CalculiX along its temperature program, and compares it with
+the solver.
 
 Both compute the structure with STEP of its temperatures, loads, friction, preload, play and clearances, and results are
 divided by STEP. CalculiX then has small displacements, and so does the solver.
@@ -48,7 +49,7 @@ def answer(case: TrussCase, truss: ResolvedTruss, parts: int = 2, even_shear: bo
     small = _small(truss)
     made = frame.Frame(small, parts=parts, even_shear=even_shear)
     lines = deck(made, times)
-    text = ccx.printed(lines)
+    text = ccx.printed(lines, ccx.LONGEST_OF_MESHES_S if truss.elements["body"].names else ccx.LONGEST_S)
     moved = ccx.tables(text, "displacements", "JOINTS")
     if len(moved) != len(times):
         raise FailedRun(code="calculix_increments")

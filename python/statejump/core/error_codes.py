@@ -969,7 +969,10 @@ CODES: dict[str, Code] = {
     "node_without_rotation": Code(
         cause="no beam, body, hinge or mean rotates the node; a beam end that releases all moments does not"),
     "planar_axis": Code(cause="in a planar truss it is z"),
-    "planar_body": Code(cause="condensed bodies need 3"),
+    "planar_body": Code(
+        cause="condensed bodies need 3",
+        remedy="give all positions three coordinates and fix the nodes across the plane",
+    ),
     "planar_axis_y": Code(cause="in a planar truss y of a section lies in the plane, to the left of its beam"),
     "planar_releases": Code(cause="in a planar truss the ends of a beam release 'Fx' and 'Rz' only"),
     "planar_gradient": Code(cause="in a planar truss the gradient along z of a section must be 0"),

@@ -34,13 +34,13 @@ def read(path: Path) -> dict[str, Labelled]:
     if order is None:
         raise Unreadable(code="matrix_op2_words", file=path)
     try:
-        found = _Records(data, order)
+        found = Records(data, order)
         return {one.name: one for one in found.matrices()}
     except (ValueError, IndexError, UnicodeError):
         raise Unreadable(code="matrix_file_damaged", file=path, form="an op2 file") from None
 
 
-class _Records:
+class Records:
     """The records of a file."""
 
     def __init__(self, data: bytes, order: str) -> None:
