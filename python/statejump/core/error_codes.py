@@ -931,7 +931,9 @@ CODES: dict[str, Code] = {
         remedy="extend table_angle_rad and table_moment_N_m",
     ),
     "moment_table_incomplete": Code(cause="table_angle_rad and table_moment_N_m belong together"),
-    "moment_table_length": Code(cause="must be as many numbers as table_angle_rad has, which are {angles}, two or more"),
+    "moment_table_length": Code(
+        cause="must be as many numbers as table_angle_rad has, which are {angles}, two or more"
+    ),
     "moment_table_not_increasing": Code(cause="must increase, {after:g} comes after {before:g}"),
     "moment_table_without_zero": Code(cause="must begin at 0 or below and end at 0 or above"),
     "hinge_sticking_missing": Code(cause="reduced.sticking = {sticking!r} needs it, the hinge has no stiffness"),

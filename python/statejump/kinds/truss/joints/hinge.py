@@ -86,7 +86,8 @@ class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Hinges) -> dict[str, Any]:
         angles, moments = joints.table_angle_rad, joints.table_moment_N_m
-        return {**super().engine_arrays(truss, joints), "table_angle_rad": list(angles), "table_moment_N_m": list(moments),
+        return {**super().engine_arrays(truss, joints),
+                "table_angle_rad": list(angles), "table_moment_N_m": list(moments),
                 "table_slope_N_m_per_rad": [moment_table.slopes(*curve) for curve in zip(angles, moments)]}
 
     def check_states(self, truss: ResolvedTruss, joints: Hinges, states: Mapping[str, np.ndarray]) -> None:
@@ -97,7 +98,8 @@ class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
             rotation = states["beam_hinge_rotation_rad"][:, index]
             for at in np.flatnonzero((rotation < angle[0]) | (rotation > angle[-1]))[:1]:
                 raise StatejumpError(
-                    code="hinge_left_table", case=truss.name, joint=joints.names[index], rotation_rad=float(rotation[at]),
+                    code="hinge_left_table", case=truss.name, joint=joints.names[index],
+                    rotation_rad=float(rotation[at]),
                     time_s=float(states["time_s"][at]), first_rad=float(angle[0]), last_rad=float(angle[-1]))
 
     def friction_N_m(self, joints: Hinges, state: Mapping[str, np.ndarray]) -> np.ndarray:
