@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hinges with a moment curve from a table: closed forms, hysteresis of a tape spring under temperature, motion, refusals."""
+"""Hinges with a moment curve from a table: closed forms, hysteresis of a tape spring under temperature, motion,
+refusals."""
 from __future__ import annotations
 
 from typing import Any
@@ -49,7 +50,8 @@ def test_stiffening_hinge_is_on_its_curve() -> None:
     bent = 0.5 * BEAMS_N_M_PER_RAD * (FREE_RAD - rotation) ** 2
     energy = found.states["elastic_energy_J"][hot]
     assert energy == pytest.approx(curve.integrate(0.0, rotation) + bent, rel=1e-6)
-    assert abs(found.energy_residue_J) < 1e-9 * energy
+    # The slope of the curve is continuous, its change is not: the work of a step across a point is of the third order.
+    assert abs(found.energy_residue_J) < 1e-8 * energy
 
 
 def limit_points() -> tuple[float, float]:
@@ -78,7 +80,7 @@ def test_tape_spring_snaps_with_hysteresis() -> None:
 def test_tape_spring_snaps_in_motion() -> None:
     made = with_table(TAPE_RAD, TAPE_N_M)
     made["beam"] = [{**beam, "density_kg_per_m3": 2700.0} for beam in made["beam"]]
-    made = {**made, "thermal": {**made["thermal"], "period_s": 20.0}, "motion": {"steps_per_cycle": 20_000},
+    made = {**made, "thermal": {**made["thermal"], "period_s": 6.0}, "motion": {"steps_per_cycle": 300_000},
             "output": {"samples_per_cycle": 2000}}
     found = motion.simulate(parse_case(made)).states
     free = FREE_RAD * found["temperature_change_K"] / 20.0

@@ -2,6 +2,7 @@
 // Checks members of fresh objects by their values, both members that Python shows and hidden ones.
 #include <omp.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/python.hpp>
 #include <boost/shared_ptr.hpp>
@@ -369,14 +370,14 @@ class Search {
     // The list starts with a pointer to its array, and the array with a pointer to the interaction.
     const Word table = table_pointer("Interaction");
     Word found = 0;
-    expect_at("InteractionContainer", "linIntrs",
-              where<Word>(container, size, [this, table, &found](Word word) {
-                if (word % sizeof(Word) != 0) return false;
-                const auto first = memory_.word(word);
-                if (!first || memory_.word(*first) != table) return false;
-                found = *first;
-                return true;
-              }));
+    const auto starts_list = [this, table](Word word) {
+      if (word % sizeof(Word) != 0) return false;
+      const auto first = memory_.word(word);
+      return first && memory_.word(*first) == table;
+    };
+    const Offsets starts = without_ends(container, where<Word>(container, size, starts_list));
+    for (const std::size_t i : starts) found = *memory_.word(read_as<Word>(container + i));
+    expect_at("InteractionContainer", "linIntrs", starts);
     if (difference_.empty()) {
       const char* interaction = reinterpret_cast<const char*>(found);
       expect(read_as<int>(interaction + member("Interaction", "id1")->offset) == 0 &&
@@ -384,6 +385,21 @@ class Search {
              "InteractionContainer", "linIntrs");
     }
     clear(container);
+  }
+
+  // A list has the pointers to its array, to the end of its entries and to the end of the array.
+  // The last two point to memory without entries, where freed memory may look like one.
+  static Offsets without_ends(const char* container, const Offsets& found) {
+    const auto follows = [&](std::size_t i, std::size_t words) {
+      const std::size_t back = words * sizeof(Word);
+      if (i < back || std::find(found.begin(), found.end(), i - back) == found.end()) return false;
+      return read_as<Word>(container + i) > read_as<Word>(container + (i - back));
+    };
+    Offsets starts;
+    for (const std::size_t i : found) {
+      if (!follows(i, 1) && !follows(i, 2)) starts.push_back(i);
+    }
+    return starts;
   }
 
   const DeclaredInterface& declared_;

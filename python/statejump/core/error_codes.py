@@ -926,7 +926,7 @@ CODES: dict[str, Code] = {
     "nothing_to_scale": Code(cause="it has no value but 0 in this case: there is nothing to scale"),
     "hinge_apart": Code(cause="its nodes are {apart_m:g} m apart", remedy="put them at one position"),
     "hinge_left_table": Code(
-        what="hinge {joint!r} rotates by {rotation_rad:.4g} rad at t = {time_s:.6g} s",
+        what="hinge {hinge!r} rotates by {rotation_rad:.4g} rad at t = {at_s:.6g} s",
         cause="its moment curve has rotations from {first_rad:.4g} to {last_rad:.4g} rad",
         remedy="extend table_angle_rad and table_moment_N_m",
     ),

@@ -98,9 +98,9 @@ class HingeType(AboutAxis[Hinge, Hinges], HingeLaw[Hinge, Hinges]):
             rotation = states["beam_hinge_rotation_rad"][:, index]
             for at in np.flatnonzero((rotation < angle[0]) | (rotation > angle[-1]))[:1]:
                 raise StatejumpError(
-                    code="hinge_left_table", case=truss.name, joint=joints.names[index],
+                    code="hinge_left_table", case=truss.name, hinge=joints.names[index],
                     rotation_rad=float(rotation[at]),
-                    time_s=float(states["time_s"][at]), first_rad=float(angle[0]), last_rad=float(angle[-1]))
+                    at_s=float(states["time_s"][at]), first_rad=float(angle[0]), last_rad=float(angle[-1]))
 
     def friction_N_m(self, joints: Hinges, state: Mapping[str, np.ndarray]) -> np.ndarray:
         found = super().friction_N_m(joints, state)
