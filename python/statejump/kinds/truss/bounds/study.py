@@ -89,7 +89,7 @@ def bounds(case: TrussCase, output: Sequence[str] = (), range_K: str | tuple[flo
             jump=jump, range_spread=in_range[0], range_jump=in_range[1],
             simulated=nan if len(path) < 2 else one.change(path[0], path[-1]),
             attained=nan if reached is None else reached.spread, fraction=parts / (parts.sum() or 1.0),
-            peak_thermal=temperatures.peak(thermal),
+            peak_thermal=temperatures.peak(thermal) if hot is None else (nan, nan),
             corners=zonogon(gains * of.limit_N) if len(rows) == 2 and len(of.joints) <= MOST_SIMULATED else None,
             path=one.vector(path) - one.vector(of.displacement_m),
             by_stiffness=by_stiffness(of, direction @ rows, direction @ gains) if elements else None))
