@@ -171,6 +171,12 @@ def test_a_range_that_reaches_a_stop_while_hot_uses_programs_with_stops() -> Non
     assert low.verdict.kind == "never_slips" and np.isfinite(low.verdict.factor)
 
 
+def test_no_peak_is_bounded_where_a_play_closes_while_hot() -> None:
+    # The latch of the boom is in its play in all rest states; hot, its spring bends the boom by six times its jump.
+    found = bounds(sj.load("trusses/latch_boom").definition, ["node:B.y"], "-60:100", simulate=False).bounds[0]
+    assert np.isnan(found.peak_thermal).all() and np.isfinite(found.jump)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_no_random_history_leaves_its_range_bounds(seed: int) -> None:
     rng = np.random.default_rng(40 + seed)
