@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Public files of reduced models: their checks, and results of their assembled runs.
 
-    PYTHONPATH=build/python /usr/bin/python3 studies/validation/public_bodies.py PYYETI PYNASTRAN
+    PYTHONPATH=build/python /usr/bin/python3 studies/bodies/public_bodies.py PYYETI PYNASTRAN
 
 PYYETI and PYNASTRAN are copies of the repositories twmacro/pyyeti (pyyeti/tests/nas2cam_extseout) and
 SteveDoyle2/pyNastran (models/superelements). The program prints the error of rigid motions of each body, and the
