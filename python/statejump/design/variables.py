@@ -129,9 +129,11 @@ def _targets(case: Case, path: str, axis: str | None) -> list[Target]:
         return [_target(path, getattr(case.value_named(section), key), axis)]
     items = {one.name: one for one in case.value_named(section)}
     chosen = meant(item, items)
+    if not items:
+        raise NotAllowed("keys", path, code="section_not_in_case", table=section)
     if not chosen:
-        raise NotAllowed("keys", path, code="section_not_in_case" if not items else "no_item_fits", table=section,
-                         pattern=item, known=", ".join(list(items)[:5]))
+        raise NotAllowed("keys", path, code="no_item_fits", table=section, pattern=item,
+                         known=", ".join(list(items)[:5]))
     return [_target(f"{section}.{name}.{key}", getattr(items[name], key), axis) for name in chosen]
 
 

@@ -12,10 +12,7 @@ from statejump.core.progress import OnProgress
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.body_points import displacements_m
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.along_axis import AlongAxis
-from statejump.kinds.truss.joints.pad import PadType
 from statejump.kinds.truss.joints.protocol import Loads
-from statejump.kinds.truss.joints.rigid import RigidType
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, whole_path
 
@@ -76,7 +73,7 @@ def turning_joint(truss: ResolvedTruss) -> tuple[str, str] | None:
     if truss.bending() is None:
         return None
     return next(((joint.section, truss.joints[joint.section].names[0]) for joint in JOINTS
-                 if truss.joints[joint.section].names and not isinstance(joint, (AlongAxis, PadType, RigidType))), None)
+                 if truss.joints[joint.section].names and not joint.rubs_at_nodes), None)
 
 
 def contributions(

@@ -148,9 +148,9 @@ def clearances(case: TrussCase) -> Clearances:
 
 
 def _refuse_others(truss: ResolvedTruss, named: Sequence[Joint]) -> None:
+    refused = {kind.section: kind.bounds_code for kind in JOINTS if kind.bounds_code}
     for joint in named:
-        if joint.section in ("ball_joint", "pad"):
-            code = "bounds_of_pad" if joint.section == "pad" else "bounds_of_clearance"
+        if code := refused.get(joint.section):
             raise StatejumpError(code=code, place=truss.name, case=truss.name, joint_with_clearance=str(joint))
     sliders = truss.sliders
     for index in np.flatnonzero(sliders.have_stops | (sliders.play_m > 0))[:1]:

@@ -19,6 +19,7 @@ from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import check_at_rest
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import engine_items
 
@@ -140,7 +141,8 @@ def sliding(case: TrussCase) -> Sliding:
     limits = found["friction_limit_N"]
     for index in friction:
         if np.isnan(limits[index]):
-            code = "bounds_of_pad" if named[index].section == "pad" else "bounds_of_clearance"
+            (kind,) = (joint for joint in JOINTS if joint.section == named[index].section)
+            code = kind.bounds_code or "bounds_of_clearance"
             raise StatejumpError(code=code, place=truss.name, case=truss.name, joint_with_clearance=str(named[index]))
     stiffness, guides = _stiffness(truss, named, found), found["guides"]
     check_stable(truss, stiffness, guides, found["of_nodes"].tocsr())

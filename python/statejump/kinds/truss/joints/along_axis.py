@@ -46,6 +46,7 @@ ArraysType = TypeVar("ArraysType", bound=Axes)
 class AlongAxis(JointType[ItemType, ArraysType]):
     """A joint type along an axis. Across the axis, the joint couples two nodes; on ground, supports hold its node."""
 
+    rubs_at_nodes = True
     noun: ClassVar[str]  # in sentences
 
     def check_vectors(self, item: ItemType, dimension: int) -> None:

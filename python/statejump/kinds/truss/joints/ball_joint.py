@@ -56,6 +56,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
     """Ball joints with clearance, supported by the solver and the DEM."""
 
     section = "ball_joint"
+    bounds_code = "bounds_of_clearance"
     Item = BallJoint
     Arrays = BallJoints
     columns: ClassVar[tuple[ItemColumn, ...]] = (

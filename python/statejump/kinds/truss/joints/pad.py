@@ -54,6 +54,8 @@ class PadType(JointType[Pad, Pads]):
     """Pads, supported by the quasi-static solver and in motion."""
 
     section = "pad"
+    rubs_at_nodes = True
+    bounds_code = "bounds_of_pad"
     Item = Pad
     Arrays = Pads
     columns: ClassVar[tuple[ItemColumn, ...]] = (

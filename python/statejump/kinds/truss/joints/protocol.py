@@ -218,6 +218,8 @@ class JointType(PartType[ItemType, ArraysType]):
     turns: ClassVar[bool] = False  # its friction is a moment
     slips_in_part: ClassVar[bool] = False  # a part of it slips at every load
     bends: ClassVar[bool] = False  # it rotates its nodes; models without rotations refuse it
+    rubs_at_nodes: ClassVar[bool] = False  # its friction is a force on its nodes, without a moment on them
+    bounds_code: ClassVar[str] = ""  # of the error with which bounds refuse it; empty: they know it
 
     @property
     def state_column(self) -> str:

@@ -45,6 +45,7 @@ class RigidType(JointType[Rigid, Rigids]):
     """Rigid bodies, supported by the quasi-static solver and in motion."""
 
     section = "rigid"
+    rubs_at_nodes = True
     bends = True
     Item = Rigid
     Arrays = Rigids
