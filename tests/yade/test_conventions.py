@@ -39,7 +39,7 @@ def test_every_attribute_has_a_documented_unit(seen):
     for name, found in seen["classes"].items():
         for attribute, doc in found["attributes"].items():
             if attribute in ("links", "program", "springs", "joints", "link1", "link2", "contacts",
-                             "gradientProgram", "bonds"):  # objects
+                             "gradientProgram", "bonds", "beams"):  # objects
                 continue
             assert re.search(r"\[[^\]]+\]", doc), f"{name}.{attribute}: {doc!r}"
 
