@@ -27,7 +27,7 @@ class DesignSettings(Section):
 
     method: str = choice(SLSQP, METHODS, CHOICE + ": cobyla needs no gradients, and is for comparison")
     iterations: int = whole(60, 1, 100_000, "most iterations of each stage")
-    tolerance: float = parameter(1e-5, "-", 1e-12, 0.1, "of the cost, at which the search ends")
+    tolerance: float = parameter(1e-6, "-", 1e-12, 0.1, "of the cost, at which the search ends")
     step: float = parameter(1e-3, "-", 1e-9, 0.1, "of central differences: change of ln(factor), factor or shift/high")
     samples: int = whole(1000, 0, 10_000_000, "random samples of the result, if there is scatter")
     seed: int = whole(1, 0, 2**31 - 1, CHOICE)

@@ -15,6 +15,8 @@ MOST_SHORT, SHORT = 12, 8  # short steps, and iterations of each
 COBYLA_PATHS = 20  # evaluations per iteration of the other methods
 FIRST = 0.3  # first change of x
 COBYLA_RADIUS = 1.0
+MOST_REPEATED = 8  # searches with SLSQP, each from the end of the last
+GAIN = 1e-4  # relative decrease of the cost for which a search is repeated
 
 
 def search(problem: Problem, method: str, x: np.ndarray, iterations: int, tolerance: float) -> str:
@@ -38,11 +40,18 @@ def short_steps(problem: Problem, method: str, x: np.ndarray, tolerance: float) 
 
 
 def _slsqp(problem: Problem, x: np.ndarray, iterations: int, tolerance: float) -> str:
+    """Search with SLSQP. A search that ends is repeated from its end without its curvature, until that gains nothing:
+    the approximate curvature may end a search in a valley of the cost."""
     constraint = {"type": "ineq", "fun": problem.margins, "jac": problem.margin_gradients}
-    found = libraries.scipy("optimize").minimize(
-        lambda at: problem.cost(at) / problem.scale, x, jac=lambda at: problem.cost_gradient(at) / problem.scale,
-        bounds=problem.bounds, constraints=[constraint], method="SLSQP",
-        options={"maxiter": iterations, "ftol": tolerance})
+    last = np.inf
+    for _ in range(MOST_REPEATED):
+        found = libraries.scipy("optimize").minimize(
+            lambda at: problem.cost(at) / problem.scale, x, jac=lambda at: problem.cost_gradient(at) / problem.scale,
+            bounds=problem.bounds, constraints=[constraint], method="SLSQP",
+            options={"maxiter": iterations, "ftol": tolerance})
+        if not found.fun < last - max(tolerance, GAIN) * abs(found.fun):
+            break
+        x, last = found.x, found.fun
     return str(found.message)
 
 
